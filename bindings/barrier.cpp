@@ -94,23 +94,24 @@ void register_barrier(py::module_& m) {
              py::kw_only(), py::arg("density"), py::arg("ground_friction"), py::arg("joint"),
              "density: kg/m^3; ground_friction: Coulomb coefficient.");
     py::class_<YieldingPosts>(m, "YieldingPosts",
-                              "Posts that tilt about their foot against a plastic moment.")
+                              "Posts that tilt about their centre of rotation against a plastic moment.")
         .def(py::init([](double mass, double inertia, double plastic_moment) {
                  return YieldingPosts{mass, inertia, plastic_moment};
              }),
              py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("plastic_moment"),
-             "mass: kg; inertia: about a horizontal axis through the foot, kg m^2; plastic_moment: N m.")
+             "mass: kg; inertia: about a horizontal axis through the centre of rotation, kg m^2; "
+             "plastic_moment: N m.")
         .def_readonly("plastic_moment", &YieldingPosts::plastic_moment, "N m");
-    py::class_<Segment>(m, "Segment", "A free-standing segment of a barrier, or a post that yields.")
+    py::class_<MovingElement>(m, "Segment", "A free-standing segment of a barrier, or a post that yields.")
         .def_property_readonly(
-            "mass", [](const Segment& s) { return s.body.mass; }, "kg")
+            "mass", [](const MovingElement& s) { return s.body.mass; }, "kg")
         .def_property_readonly(
-            "yaw_inertia", [](const Segment& s) { return s.body.inertia(2, 2); },
+            "yaw_inertia", [](const MovingElement& s) { return s.body.inertia(2, 2); },
             "kg m^2, about the vertical through the mass centre")
-        .def_readonly("mass_center_height", &Segment::mass_center_height, "m")
-        .def_readonly("half_length", &Segment::half_length, "m")
-        .def_readonly("half_base", &Segment::half_base, "m")
-        .def_readonly("plastic_moment", &Segment::plastic_moment,
+        .def_readonly("mass_center_height", &MovingElement::mass_center_height, "m")
+        .def_readonly("half_length", &MovingElement::half_length, "m")
+        .def_readonly("half_base", &MovingElement::half_base, "m")
+        .def_readonly("plastic_moment", &MovingElement::plastic_moment,
                       "N m, of a post that yields; else infinite");
 
     py::class_<Barrier, std::shared_ptr<Barrier>>(m, "Barrier",
@@ -130,13 +131,13 @@ void register_barrier(py::module_& m) {
         .def_property_readonly(
             "segments",
             [](const Barrier& barrier) {
-                return barrier.free_standing ? barrier.segments : std::vector<Segment>{};
+                return barrier.free_standing ? barrier.moving_elements : std::vector<MovingElement>{};
             },
             "The elements where they are free-standing, else none.")
         .def_property_readonly(
             "yielding_posts",
             [](const Barrier& barrier) {
-                return barrier.yielding ? barrier.segments : std::vector<Segment>{};
+                return barrier.yielding ? barrier.moving_elements : std::vector<MovingElement>{};
             },
             "The elements where they are posts that yield, else none.")
         .def_property_readonly(

@@ -31,7 +31,7 @@ void register_extremes(py::module_& m) {
     py::class_<ExtremeGroups>(m, "ExtremeGroups", "Which groups of extremes are wanted.")
         .def(py::init([](bool normal_force, bool motion, bool attitude, bool energy, bool filtered_force,
                          bool filtered_deceleration, bool penetration, bool wheel_climb, bool element_loads,
-                         bool momentum, bool joint, bool segments) {
+                         bool momentum, bool joint, bool moving_elements) {
                  return ExtremeGroups{.normal_force = normal_force,
                                       .motion = motion,
                                       .attitude = attitude,
@@ -43,7 +43,7 @@ void register_extremes(py::module_& m) {
                                       .element_loads = element_loads,
                                       .momentum = momentum,
                                       .joint = joint,
-                                      .segments = segments};
+                                      .moving_elements = moving_elements};
              }),
              py::kw_only(), py::arg("normal_force") = false, py::arg("motion") = false,
              py::arg("attitude") = false, py::arg("energy") = false, py::arg("filtered_force") = false,
@@ -93,14 +93,14 @@ void register_extremes(py::module_& m) {
         .def_readonly("force_50ms", &Extremes::ElementLoads::force_50ms, "N, greatest mean over 50 ms")
         .def_readonly("moment", &Extremes::ElementLoads::moment, "N m, greatest moment")
         .def_readonly("moment_50ms", &Extremes::ElementLoads::moment_50ms, "N m, greatest mean over 50 ms");
-    py::class_<Extremes::Segments>(m, "ExtremeSegments", "How far the elements of a barrier move.")
-        .def_readonly("deflection", &Extremes::Segments::deflection,
+    py::class_<Extremes::MovingElements>(m, "ExtremeSegments", "How far the elements of a barrier move.")
+        .def_readonly("deflection", &Extremes::MovingElements::deflection,
                       "m, of the furthest corner of any base, square to the line, away from the traffic")
-        .def_readonly("residual_deflection", &Extremes::Segments::residual_deflection,
+        .def_readonly("residual_deflection", &Extremes::MovingElements::residual_deflection,
                       "m, the same at the end")
-        .def_readonly("tilt", &Extremes::Segments::tilt, "rad, greatest tilt of any post that yields")
-        .def_readonly("residual_tilt", &Extremes::Segments::residual_tilt, "rad, the same at the end")
-        .def_readonly("overturning", &Extremes::Segments::overturning,
+        .def_readonly("tilt", &Extremes::MovingElements::tilt, "rad, greatest tilt of any post that yields")
+        .def_readonly("residual_tilt", &Extremes::MovingElements::residual_tilt, "rad, the same at the end")
+        .def_readonly("overturning", &Extremes::MovingElements::overturning,
                       "m/s^2, overturning moment over mass and half the base, 50-ms means");
     py::class_<Extremes::JointLoads>(m, "ExtremeJointLoads", "Articulation and force of the first joint.")
         .def_readonly("angle", &Extremes::JointLoads::angle, "rad, greatest magnitude of the articulation")
@@ -146,7 +146,7 @@ void register_extremes(py::module_& m) {
             "joint", [](const Extremes& found) { return found.joint.value(); },
             "rad and N, articulation and force of the first joint")
         .def_property_readonly(
-            "segments", [](const Extremes& found) { return found.segments.value(); },
+            "segments", [](const Extremes& found) { return found.moving_elements.value(); },
             "m and m/s^2, movement of free-standing segments or of posts that yield");
 }
 

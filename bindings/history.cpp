@@ -19,26 +19,26 @@ void add_view(py::class_<Class>& cls, const char* name, T Class::* member, const
 }
 
 // One column of each free-standing segment, side by side.
-OutputArray of_segments(const History& history, Column SegmentHistory::* column) {
+OutputArray of_moving_elements(const History& history, Column MovingElementHistory::* column) {
     const auto rows = static_cast<py::ssize_t>(history.time.size());
-    OutputArray result({rows, static_cast<py::ssize_t>(history.segments.size())});
+    OutputArray result({rows, static_cast<py::ssize_t>(history.moving_elements.size())});
     auto at = result.mutable_unchecked<2>();
     for (py::ssize_t i = 0; i < at.shape(1); ++i)
         for (py::ssize_t row = 0; row < rows; ++row)
             at(row, i) =
-                (history.segments[static_cast<std::size_t>(i)].*column)[static_cast<std::size_t>(row)];
+                (history.moving_elements[static_cast<std::size_t>(i)].*column)[static_cast<std::size_t>(row)];
     return read_only(std::move(result));
 }
 
 // The same of vectors along the ground.
-OutputArray of_segments(const History& history, std::vector<Vec3> SegmentHistory::* column) {
+OutputArray of_moving_elements(const History& history, std::vector<Vec3> MovingElementHistory::* column) {
     const auto rows = static_cast<py::ssize_t>(history.time.size());
-    OutputArray result({rows, static_cast<py::ssize_t>(history.segments.size()), py::ssize_t{2}});
+    OutputArray result({rows, static_cast<py::ssize_t>(history.moving_elements.size()), py::ssize_t{2}});
     auto at = result.mutable_unchecked<3>();
     for (py::ssize_t i = 0; i < at.shape(1); ++i)
         for (py::ssize_t row = 0; row < rows; ++row) {
             const Vec3& v =
-                (history.segments[static_cast<std::size_t>(i)].*column)[static_cast<std::size_t>(row)];
+                (history.moving_elements[static_cast<std::size_t>(i)].*column)[static_cast<std::size_t>(row)];
             at(row, i, 0) = v.x(), at(row, i, 1) = v.y();
         }
     return read_only(std::move(result));
@@ -47,14 +47,14 @@ OutputArray of_segments(const History& history, std::vector<Vec3> SegmentHistory
 // Axes of posts that yield; no columns where there are none.
 OutputArray post_axes(const History& history) {
     const auto rows = static_cast<py::ssize_t>(history.time.size());
-    const bool yields = !history.segments.empty() && !history.segments.front().axis.empty();
-    const auto posts = yields ? static_cast<py::ssize_t>(history.segments.size()) : py::ssize_t{0};
+    const bool yields = !history.moving_elements.empty() && !history.moving_elements.front().axis.empty();
+    const auto posts = yields ? static_cast<py::ssize_t>(history.moving_elements.size()) : py::ssize_t{0};
     OutputArray result({rows, posts, py::ssize_t{3}});
     auto at = result.mutable_unchecked<3>();
     for (py::ssize_t i = 0; i < posts; ++i)
         for (py::ssize_t row = 0; row < rows; ++row) {
             const Vec3& axis =
-                history.segments[static_cast<std::size_t>(i)].axis[static_cast<std::size_t>(row)];
+                history.moving_elements[static_cast<std::size_t>(i)].axis[static_cast<std::size_t>(row)];
             for (py::ssize_t k = 0; k < 3; ++k)
                 at(row, i, k) = axis[static_cast<Eigen::Index>(k)];
         }
@@ -173,20 +173,24 @@ void register_history(py::module_& m) {
     add_view(history, "sliding", &History::sliding, "(n,) J, energy lost where a unit slides on another one");
     add_view(history, "yielding", &History::yielding, "(n,) J, plastic work of posts that yield");
     history.def_property_readonly(
-        "segment_position", [](const History& self) { return of_segments(self, &SegmentHistory::position); },
+        "segment_position",
+        [](const History& self) { return of_moving_elements(self, &MovingElementHistory::position); },
         "(n, k, 2) m, foot of the axis of each free-standing segment, world");
     history.def_property_readonly(
-        "segment_velocity", [](const History& self) { return of_segments(self, &SegmentHistory::velocity); },
+        "segment_velocity",
+        [](const History& self) { return of_moving_elements(self, &MovingElementHistory::velocity); },
         "(n, k, 2) m/s, mass centre of each segment, world");
     history.def_property_readonly(
-        "segment_yaw", [](const History& self) { return of_segments(self, &SegmentHistory::yaw); },
+        "segment_yaw",
+        [](const History& self) { return of_moving_elements(self, &MovingElementHistory::yaw); },
         "(n, k) rad, yaw of each segment since the start");
     history.def_property_readonly(
-        "segment_yaw_rate", [](const History& self) { return of_segments(self, &SegmentHistory::yaw_rate); },
+        "segment_yaw_rate",
+        [](const History& self) { return of_moving_elements(self, &MovingElementHistory::yaw_rate); },
         "(n, k) rad/s, yaw rate of each segment");
     history.def_property_readonly(
         "post_axis", [](const History& self) { return post_axes(self); },
-        "(n, k, 3) unit vectors from foot to top of posts that yield, world; k = 0 where none does");
+        "(n, k, 3) unit vectors along posts that yield, upwards, world; k = 0 where none does");
     history.def_readonly("momentum_residual", &History::momentum_residual,
                          "max |m a - sum of forces| / max |force|");
     history.def_property_readonly(

@@ -182,6 +182,8 @@ def barriers() -> str:
         for name, member in vars(Barrier).items()
         if isinstance(member, staticmethod) and not name.startswith("_")
     ]
+    if not makers:
+        raise ValueError("Barrier must have static methods that make barriers, got none")
     return table(("maker", "makes"), [(f"`Barrier.{n}`", _plain(d.split("\n\n")[0])) for n, d in makers])
 
 

@@ -585,7 +585,7 @@ class History:
     @property
     def post_axis(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, k, 3) unit vectors from foot to top of posts that yield, world; k = 0 where none does
+        (n, k, 3) unit vectors along posts that yield, upwards, world; k = 0 where none does
         """
     @property
     def potential(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1366,11 +1366,11 @@ class Vehicle:
         """
 class YieldingPosts:
     """
-    Posts that tilt about their foot against a plastic moment.
+    Posts that tilt about their centre of rotation against a plastic moment.
     """
     def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.SupportsFloat | typing.SupportsIndex, plastic_moment: typing.SupportsFloat | typing.SupportsIndex) -> None:
         """
-        mass: kg; inertia: about a horizontal axis through the foot, kg m^2; plastic_moment: N m.
+        mass: kg; inertia: about a horizontal axis through the centre of rotation, kg m^2; plastic_moment: N m.
         """
     @property
     def plastic_moment(self) -> float:

@@ -34,6 +34,7 @@ _OLD = {
     "along_panel": "vehicle.along_panel",
     "arguments": "base.arguments",
     "articulated": "vehicle.vehicle",
+    "barrier.base": "barrier.barrier",
     "barrier_kinds": "barrier.kinds",
     "barrier_surfaces": "barrier.surfaces",
     "barrier_text": "barrier.text",
@@ -128,6 +129,7 @@ _OLD = {
 """Path of an earlier version -> where the module is."""
 
 _OLD_NAMES = {
+    "barrier.base.Surface": "barrier.barrier_kind",
     "coarse_skin.node_spacing": "vehicle.node_spacing",
     "frames.capture": "result.capture",
     "free_standing.base_corners": "result.segment_motion",

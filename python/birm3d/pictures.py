@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .assessment.design_table import DesignLoad
-    from .barrier.base import Barrier
+    from .barrier.barrier import Barrier
     from .calibration.result import CalibrationResult
     from .result.load_map import LoadMap
     from .result.result import Result

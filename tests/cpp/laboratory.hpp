@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -15,7 +14,6 @@ namespace laboratory {
 
 using namespace birm3d;
 
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double pi = std::numbers::pi;
 
 // The law of W2, all trusses together: 3 MN/m to 0.4 m, 6 MN/m beyond, unloading 60 MN/m.

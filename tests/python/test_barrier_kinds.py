@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import inspect
 import json
 import math
@@ -237,7 +238,26 @@ def test_a_kind_is_known_in_three_files() -> None:
     paths = [path for folder in folders for path in (package / folder).rglob("*.py")]
     known = [path for path in paths if code.search(path.read_text(encoding="utf-8"))]
     there = sorted(str(path.relative_to(package)) for path in known)
-    assert there == ["barrier/kinds.py", "barrier/makers.py", "barrier/planter.py"]
+    assert there == ["barrier/barrier.py", "barrier/kinds.py", "barrier/planter.py"]
+
+
+@pytest.mark.parametrize(
+    "place",
+    [
+        "jersey.Jersey",
+        "mesh.MeshBarrier",
+        "planter.Planter",
+        "posts.Bollards",
+        "posts.Pole",
+        "rigid_wall.RigidWall",
+    ],
+)
+def test_kinds_are_found_where_they_were(place: str) -> None:
+    module, name = place.split(".")
+    found = getattr(importlib.import_module(f"birm3d.barrier.{module}"), name)
+    assert found is getattr(birm3d.barrier.kinds, name)
+    with pytest.warns(DeprecationWarning, match=r"write birm3d\.barrier\.barrier"):
+        assert importlib.import_module("birm3d.barrier.base").Barrier is Barrier
 
 
 def test_every_size_is_an_argument_and_every_kind_can_be_made() -> None:
@@ -246,6 +266,9 @@ def test_every_size_is_an_argument_and_every_kind_can_be_made() -> None:
         placed = {"friction", "origin", "heading"}
         assert {size.name for size in made.sizes} == set(arguments) - placed
         assert isinstance(getattr(Barrier, kind)(), made)
+        assert issubclass(made, Barrier)
+        # The site's table of kinds is made of these.
+        assert isinstance(vars(Barrier)[kind], staticmethod)
 
 
 # ---- names of numbers --------------------------------------------------------------------------------------

@@ -629,7 +629,7 @@ def test_other_kinds_of_runs(make: Any, tmp_path: Path, monkeypatch: pytest.Monk
             True
         ]
         part = data["barrier"][1]
-        moved = np.array(part["foot"]) + np.array(part["shift"])
+        moved = np.array(part["center"]) + np.array(part["shift"])
         assert np.abs(moved[-1, :2] - result.segment_position[-1, 1]).max() < 1e-3
         yaw = math.radians(result.segment_yaw[-1, 1])
         assert np.array(part["turn"])[-1, [0, 3]] == pytest.approx([math.cos(yaw), math.sin(yaw)], abs=1e-5)

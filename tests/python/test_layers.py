@@ -36,13 +36,6 @@ LAYERS = (
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 WAY_UP = "pictures"
 """Every layer may import it; inside its functions, and for types, it imports any layer."""
-MAKERS = {"barrier.makers": ("barrier.kinds",)}
-"""A class whose methods return classes derived from it: ``Barrier.rigid_wall()`` returns a ``RigidWall``.
-
-Its functions import them, and they import it. A table that kinds enter when they are loaded would hide
-the circle; type checkers would know only that a maker returns a ``Barrier``. A barrier that held its kind
-would break ``isinstance``, ``dataclasses.replace`` and ``bollards.spacing`` in the scripts of users.
-"""
 DOOR = ("", "_moved")
 """``birm3d/__init__.py`` and the table of old paths: they know all modules, and no module imports them."""
 
@@ -131,7 +124,7 @@ def circles(edges: Edges) -> list[list[str]]:
         order[name] = lowest[name] = len(order)
         open_.append(name)
         for target, loaded in edges.get(name, {}).items():
-            if not loaded and (name == WAY_UP or target in MAKERS.get(name, ())):
+            if not loaded and name == WAY_UP:
                 continue
             if target not in order:
                 visit(target)
@@ -197,30 +190,16 @@ def test_a_circle_is_found_and_the_way_up_is_none(tmp_path: Path) -> None:
     assert upward(edges_of(tmp_path)) == ["pictures imports plotting.figure"]
 
 
-def test_exemptions_are_needed() -> None:
-    """Each import in MAKERS is there, inside of functions only, and closes a circle."""
-    edges = edges_of(PACKAGE)
-    for name, targets in MAKERS.items():
-        for target in targets:
-            assert edges[name][target] is False
-            assert name in reached_from(target, edges)
-
-
-def reached_from(start: str, edges: Edges) -> set[str]:
-    """Return the modules that a module imports, directly or by others."""
-    found: set[str] = set()
-    left = [start]
-    while left:
-        for target in edges.get(left.pop(), {}):
-            if target not in found:
-                found.add(target)
-                left.append(target)
-    return found
-
-
-def test_a_circle_of_a_maker_is_found_where_it_is_loaded(tmp_path: Path) -> None:
-    files = {"barrier/makers.py": "from .kinds import Wall", "barrier/kinds.py": "from .makers import Base"}
-    write(tmp_path, files)
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from .kinds import Wall",
+        "def f() -> None:\n    from .kinds import Wall",
+        "if TYPE_CHECKING:\n    from .kinds import Wall",
+    ],
+)
+def test_a_circle_of_an_import_in_a_function_or_for_types_is_found(tmp_path: Path, line: str) -> None:
+    write(tmp_path, {"barrier/makers.py": line, "barrier/kinds.py": "from .makers import Base"})
     assert circles(edges_of(tmp_path)) == [["barrier.kinds", "barrier.makers"]]
 
 

@@ -11,7 +11,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Settings, Simulation, Vehicle, _core
-from birm3d.barrier.rigid_wall import RigidWall
+from birm3d.barrier.kinds import RigidWall
 
 SPEED = 13.4  # m/s
 

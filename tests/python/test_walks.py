@@ -17,8 +17,8 @@ EXAMPLES = {
     "a kind of barrier": (
         r"\b[Pp]lanter\b",
         [
+            "python/birm3d/barrier/barrier.py",
             "python/birm3d/barrier/kinds.py",
-            "python/birm3d/barrier/makers.py",
             "python/birm3d/barrier/planter.py",
         ],
     ),

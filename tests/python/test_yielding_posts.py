@@ -212,7 +212,7 @@ def test_a_foundation_that_turns_below_the_ground(car: Vehicle) -> None:
     # Moments are about the ground, where the vehicle's force has a height between the sill and the bonnet.
     assert 0.2 < load.height_at_peak < 0.8
     motion = element_motion(run, run.time)
-    assert motion.foot[0] == pytest.approx([0.0, 0.0, -1.0])
+    assert motion.center[0] == pytest.approx([0.0, 0.0, -1.0])
     at_ground = motion.moved(len(run.time) - 1, 0, np.zeros((1, 3)))[0]
     assert at_ground[0] == pytest.approx(math.sin(math.radians(run.post_tilt[-1, 0])), rel=1e-6)
     assert run.energy["yielding"][-1] == pytest.approx(8e4 * math.radians(run.post_tilt[-1, 0]), rel=5e-3)

@@ -30,7 +30,7 @@ void find_rate_factor(const ContactPass& pass, const ContactBlock& block, std::s
         set_rate_factor(pass.mesh.rate_sensitivity, block.end->force, motion, places, block.contact, to);
     };
     if (at != several_obstacles) return set(pass.relative_motion[at], factor);
-    if (pass.now.segments.empty()) return set(pass.motion, factor);
+    if (pass.now.moving_elements.empty()) return set(pass.motion, factor);
     alignas(64) BlockColumn factor_of_obstacle;
     for (std::size_t k = 0; k < block.reachable.size(); ++k) {
         set(pass.relative_motion[block.reachable[k]], factor_of_obstacle);

@@ -1,7 +1,6 @@
 #include "contact/candidates.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "contact/indentation.hpp"
@@ -12,15 +11,13 @@ namespace birm3d {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // How far a node in contact can have moved off its surface within the step (m).
 double margin_of(const Scene& scene, std::size_t u, const State& from, const Trial& trial) {
     const Unit& unit = scene.vehicle->units[u];
     const State& now = trial.state;
     return trial.dt *
                (std::max(fastest_point(unit, from.units[u].body), fastest_point(unit, now.units[u].body)) +
-                std::max(fastest_segment(scene, from), fastest_segment(scene, now))) +
+                std::max(fastest_moving_element(scene, from), fastest_moving_element(scene, now))) +
            tolerance::touching_gap;
 }
 
@@ -46,20 +43,20 @@ bool motion_matters(const Scene& scene, const TrussMesh& mesh, const std::vector
     return has_friction || tires_have || mesh.rate_sensitivity > 0.0;
 }
 
-// The unit's motion at the end of the step, seen from each near obstacle. Free-standing segments have their predicted
+// The unit's motion at the end of the step, seen from each near obstacle. Moving elements have their predicted
 // motions for this; their own are restored afterwards.
 void find_relative_motions(const Scene& scene, std::size_t u, const State& from, const Twist& motion,
                            Trial& trial) {
     std::vector<Twist>& relative = trial.skin.relative_motion;
-    if (trial.state.segments.empty()) return;
-    const std::vector<BodyState> drifted = trial.state.segments;
-    predict_segments(scene, from, trial.dt, trial.state);
+    if (trial.state.moving_elements.empty()) return;
+    const std::vector<BodyState> drifted = trial.state.moving_elements;
+    predict_moving_elements(scene, from, trial.dt, trial.state);
     for (std::size_t k = 0; k < relative.size(); ++k) {
         const Twist other =
             obstacle_motion(scene, trial.skin.near[k].index, trial.state, trial.state.units[u].body);
         relative[k] = {motion.velocity - other.velocity, motion.angular_velocity - other.angular_velocity};
     }
-    trial.state.segments = drifted;
+    trial.state.moving_elements = drifted;
 }
 
 // Can nodes within a box meet the obstacle itself? `panel_bits`: their panels.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "contact/post_tilting.hpp"
@@ -17,8 +16,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool any_sprung(const KickMemory& memory) {
     return std::any_of(memory.sprung.begin(), memory.sprung.end(),
@@ -114,7 +111,7 @@ void begin_iteration(const State& state, KickMemory& memory) {
     kicked.on_cores.assign(memory.bodies.size(), {});
     list_motions(state, memory.bodies, memory.pushed);
     for (RigidContact& contact : kicked.contacts) {
-        if (!pushes_segment(contact)) continue;
+        if (!pushes_moving_element(contact)) continue;
         const Twist& other = sliding_motions(memory)[static_cast<std::size_t>(contact.other)];
         contact.sliding_surface = other.velocity + other.angular_velocity.cross(contact.other_arm);
     }
@@ -165,7 +162,7 @@ void kick_by_normal_impulses(const Scene& scene, ContactKick& kicked, State& sta
 void solve_with_friction(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
     ContactKick& kicked = memory.kick;
     begin_iteration(state, memory);
-    const bool meets = meets_segments(kicked.contacts);
+    const bool meets = meets_moving_element(kicked.contacts);
     if (meets) find_base_reactions(scene, by, state, memory);
     const bool meets_posts = meets && scene.tilts();
     if (meets_posts) begin_holding_posts(scene, by, state, memory);
@@ -184,10 +181,10 @@ void solve_with_friction(const Scene& scene, const KickedBy& by, KickMemory& mem
     }
     if (meets_posts) free_posts(scene, state, memory);
     kick_by_normal_impulses(scene, kicked, state);
-    // An impact that meets no segment does not change the segments.
-    if (state.segments.empty() || (by.is_impact && !meets)) return;
+    // An impact that meets no moving element does not change them.
+    if (state.moving_elements.empty() || (by.is_impact && !meets)) return;
     find_base_reactions(scene, by, state, memory);
-    move_segments(scene, memory, state);
+    move_elements(scene, memory, state);
 }
 
 // Lowers each joint's target velocity by its gap after the drift over dt. Returns the greatest gap (m).

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
@@ -15,8 +14,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Did the post stand in front of the panel at the start of the step?
 bool stood_before(const ContactPass& pass, std::size_t k, std::size_t p) {

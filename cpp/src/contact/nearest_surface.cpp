@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
@@ -15,8 +14,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 BIRM3D_BLOCK_LOOP void set_nothing_met(NodeFaces& faces, BlockContact& contact,
                                        std::array<std::size_t, block_size>& nearest) {

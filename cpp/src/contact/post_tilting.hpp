@@ -1,4 +1,5 @@
-// Posts that yield: rigid until the moment of the loads about the foot exceeds the plastic one, which then resists the tilting.
+// Posts that yield: rigid until the moment of the loads about the centre of rotation exceeds the plastic one.
+// That then resists the tilting.
 // Like Coulomb friction it is a limited impulse that never reverses the motion, found at the end of each half kick.
 //
 // Where the rigid core meets a post, the impulse depends on whether the post stands still. One that does is fixed for the
@@ -12,10 +13,10 @@ namespace birm3d {
 
 // Impulse of the plastic moment within `time` on a post of the angular momentum `momentum` (N m s). Unlimited where the post
 // lies on the ground.
-Vec3 plastic_impulse(const Segment& post, const BodyState& body, const Vec3& momentum, double time);
+Vec3 plastic_impulse(const MovingElement& post, const BodyState& body, const Vec3& momentum, double time);
 
 // Finds the impulses of the plastic moments for the present impulses of `memory.kick.contacts` and `memory.kick.on_cores`.
-// Stores them in `memory.kick.on_base`, and the angular velocities in `memory.segment_motions`.
+// Stores them in `memory.kick.on_base`, and the angular velocities in `memory.element_motions`.
 void find_plastic_moments(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory);
 
 // Posts that stood still before the kick are held at first. Sets `memory.posts_held` and the bodies of the solver.

@@ -70,7 +70,7 @@ Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, Tri
     return {R.transpose() * motion.velocity, R.transpose() * motion.angular_velocity};
 }
 
-void predict_segments(const Scene& scene, const State& from, double dt, State& now) {
+void predict_moving_elements(const Scene& scene, const State& from, double dt, State& now) {
     for (const UnitState& unit : from.units)
         for (const ContactLoad& contact : unit.contact_loads) {
             const int body = body_of_obstacle(scene, contact.obstacle);
@@ -80,10 +80,10 @@ void predict_segments(const Scene& scene, const State& from, double dt, State& n
             kick_body(scene, static_cast<std::size_t>(body), reaction_of(coming), now);
         }
     if (!scene.tilts()) return;
-    for (std::size_t i = 0; i < now.segments.size(); ++i) {
-        BodyState& post = now.segments[i];
+    for (std::size_t i = 0; i < now.moving_elements.size(); ++i) {
+        BodyState& post = now.moving_elements[i];
         post.angular_momentum +=
-            plastic_impulse(scene.barrier->segments[i], post, post.angular_momentum, 0.5 * dt);
+            plastic_impulse(scene.barrier->moving_elements[i], post, post.angular_momentum, 0.5 * dt);
     }
 }
 

@@ -11,7 +11,7 @@ namespace birm3d {
 // kernels/friction.hpp).
 Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, Trial& trial);
 
-// Predicts the motions of the barrier's segments in `now`, from the extrapolated loads.
-void predict_segments(const Scene& scene, const State& from, double dt, State& now);
+// Predicts the motions of the barrier's moving elements in `now`, from the extrapolated loads.
+void predict_moving_elements(const Scene& scene, const State& from, double dt, State& now);
 
 }  // namespace birm3d

@@ -196,7 +196,7 @@ void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vec
     for (const RigidContact& contact : kicked.contacts) {
         const double loss = loss_of(contact, before, after);
         // A post that its plastic moment holds against the rigid core pushes the core: that is a part of the moment's work.
-        const bool gives_back = loss < 0.0 && scene.tilts() && pushes_segment(contact);
+        const bool gives_back = loss < 0.0 && scene.tilts() && pushes_moving_element(contact);
         (gives_back ? at_base : lost_in(contact, state.energies)) += loss;
         if (contact.source == ContactSource::core)
             friction_of(scene, contact.obstacle, state.energies) -=

@@ -21,7 +21,7 @@ double& friction_of(const Scene& scene, std::size_t obstacle, Energies& energies
 double power(const Wrench& w, const Twist& motion);
 Twist mean(const Twist& a, const Twist& b);
 
-// Lists units and segments for the solver.
+// Lists units and moving elements for the solver.
 void list_bodies(const Scene& scene, const State& state, std::vector<ContactBody>& bodies);
 // Brings the motions of the listed bodies up to date.
 void set_motions(const State& state, std::vector<ContactBody>& bodies);

@@ -24,7 +24,7 @@ Twist motion_without(const Wrench& friction, const ContactBody& body) {
             body.motion.angular_velocity - body.inverse_inertia * friction.torque};
 }
 
-// Greatest inverse mass of the segments that a unit of the vehicle pushes, at the point of contact (1/kg).
+// Greatest inverse mass of the moving elements that a unit of the vehicle pushes, at the point of contact (1/kg).
 double greatest_other_inverse_mass(const std::vector<RigidContact>& contacts, std::size_t unit,
                                    const std::vector<ContactBody>& bodies) {
     double greatest = 0.0;

@@ -15,7 +15,7 @@ void sum_tire_impulses(const Scene& scene, const KickedBy& by, KickMemory& memor
 // joined units apart, and the joint resists. Without its impulse, tyres would seem to slide.
 void find_held_motions(const Scene& scene, const KickedBy& by, KickMemory& memory);
 
-// Finds the friction of tyres and of bottomed-out trusses, on the vehicle and on segments, at the present normal impulses.
+// Finds the friction of tyres and of bottomed-out trusses, on the vehicle and on moving elements, at the present normal impulses.
 // Kicks the units by what has changed since the last time.
 void kick_by_friction(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state);
 

@@ -59,7 +59,7 @@ double kinetic_energy_of(const Scene& scene, const State& state) {
 void keep(const Scene& scene, const State& state, Impact& impact) {
     impact.happened = true;
     impact.bodies.clear();
-    impact.segments = state.segments;
+    impact.moving_elements = state.moving_elements;
     impact.energies = state.energies;
     impact.energies.kinetic = kinetic_energy_of(scene, state);
     for (const UnitState& unit : state.units)
@@ -117,7 +117,7 @@ class ImpactAttempts {
         set_impact_targets(restitution, reach_, fastest_, memory_.bodies, memory_.kick.contacts);
         const std::span<const Twist> rolling = memory_.sliding.empty() ? before_ : memory_.sliding;
         kick_by_contacts(scene_,
-                         {.pressed = Column(state_.segments.size()),
+                         {.pressed = Column(state_.moving_elements.size()),
                           .at_end = rolling,
                           .from = before_,
                           .is_impact = true},

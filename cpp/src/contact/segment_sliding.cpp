@@ -15,7 +15,7 @@ namespace {
 void find_limits(const Scene& scene, const Column& pressed, const ContactKick& kicked, Column& limits) {
     limits = pressed;
     for (const RigidContact& contact : kicked.contacts)
-        if (pushes_segment(contact))
+        if (pushes_moving_element(contact))
             limits[contact.obstacle] += contact.impulse * contact.normal.z() + contact.friction_impulse.z();
     for (double& limit : limits)
         limit = scene.barrier->free_standing->ground_friction * std::max(0.0, limit);
@@ -41,21 +41,21 @@ struct PlanarAxes {
 void list_slabs(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
     const std::size_t units = state.units.size();
     std::vector<PinnedSlab>& slabs = memory.slabs;
-    slabs.resize(state.segments.size());
+    slabs.resize(state.moving_elements.size());
     for (std::size_t i = 0; i < slabs.size(); ++i) {
-        const Segment& segment = scene.barrier->segments[i];
-        const BodyState& body = state.segments[i];
+        const MovingElement& element = scene.barrier->moving_elements[i];
+        const BodyState& body = state.moving_elements[i];
         PinnedSlab& slab = slabs[i];
-        slab.mass = segment.body.mass;
-        slab.inertia = segment.body.inertia(2, 2);
+        slab.mass = element.body.mass;
+        slab.inertia = element.body.inertia(2, 2);
         slab.limit = memory.limits[i];
         const PlanarAxes axes(body.orientation);
         for (std::size_t c = 0; c < slab.arm.size(); ++c)
-            slab.arm[c] = segment.corner[c].x() * axes.x + segment.corner[c].y() * axes.y;
-        slab.motion = planar_motion(segment.body, body.velocity, body.angular_momentum.z());
+            slab.arm[c] = element.corner[c].x() * axes.x + element.corner[c].y() * axes.y;
+        slab.motion = planar_motion(element.body, body.velocity, body.angular_momentum.z());
         const Wrench& push = memory.kick.on_cores[units + i];
-        slab.motion += segment.body.inverse_mass * Vec3(push.force.x(), push.force.y(), 0.0);
-        slab.motion.z() += segment.body.inverse_inertia(2, 2) * push.torque.z();
+        slab.motion += element.body.inverse_mass * Vec3(push.force.x(), push.force.y(), 0.0);
+        slab.motion.z() += element.body.inverse_inertia(2, 2) * push.torque.z();
         // A segment that was at rest probably stays at rest, and the solver converges fastest from there.
         const Twist& from = by.from[units + i];
         const bool rested = from.velocity.isZero(0.0) && from.angular_velocity.isZero(0.0);
@@ -64,9 +64,9 @@ void list_slabs(const Scene& scene, const KickedBy& by, const State& state, Kick
         if (!rested) slab.guess = {guess.velocity.x(), guess.velocity.y(), guess.angular_velocity.z()};
     }
     for (const RigidContact& contact : memory.kick.contacts) {
-        if (!pushes_segment(contact)) continue;
+        if (!pushes_moving_element(contact)) continue;
         const Wrench push = wrench_on_other(contact);
-        const RigidBody& body = scene.barrier->segments[contact.obstacle].body;
+        const RigidBody& body = scene.barrier->moving_elements[contact.obstacle].body;
         Vec3& motion = slabs[contact.obstacle].motion;
         motion.head<2>() += body.inverse_mass * push.force.head<2>();
         motion.z() += body.inverse_inertia(2, 2) * push.torque.z();
@@ -74,12 +74,12 @@ void list_slabs(const Scene& scene, const KickedBy& by, const State& state, Kick
 }
 
 void list_pins(const Scene& scene, const State& state, std::vector<SlabPin>& pins) {
-    pins.resize(state.segments.size() - 1);
+    pins.resize(state.moving_elements.size() - 1);
     for (std::size_t i = 0; i < pins.size(); ++i) {
-        const BodyState &first = state.segments[i], &next = state.segments[i + 1];
+        const BodyState &first = state.moving_elements[i], &next = state.moving_elements[i + 1];
         SlabPin& pin = pins[i];
-        pin.on_first = scene.barrier->segments[i].half_length * PlanarAxes(first.orientation).y;
-        pin.on_next = -scene.barrier->segments[i + 1].half_length * PlanarAxes(next.orientation).y;
+        pin.on_first = scene.barrier->moving_elements[i].half_length * PlanarAxes(first.orientation).y;
+        pin.on_next = -scene.barrier->moving_elements[i + 1].half_length * PlanarAxes(next.orientation).y;
         pin.gap = (first.position - next.position).head<2>() + pin.on_first - pin.on_next;
     }
 }
@@ -91,7 +91,7 @@ Wrench wrench_along_ground(const Vec3& push) {
 void find_pinned_friction(const KickedBy& by, KickMemory& memory) {
     memory.chain.solve(memory.slabs, memory.pins, by.drift);
     for (std::size_t i = 0; i < memory.slabs.size(); ++i) {
-        memory.segment_motions[i] = memory.chain.motions()[i];
+        memory.element_motions[i] = memory.chain.motions()[i];
         memory.kick.on_base[i] = wrench_along_ground(memory.chain.frictions()[i]);
         memory.kick.on_pins[i] = wrench_along_ground(memory.chain.pulls()[i]);
     }
@@ -102,70 +102,71 @@ void find_loose_friction(const Scene& scene, KickMemory& memory) {
         const PinnedSlab& slab = memory.slabs[i];
         Wrench& friction = memory.kick.on_base[i];
         friction = {};
-        memory.segment_motions[i] = slab.motion;
+        memory.element_motions[i] = slab.motion;
         if (slab.motion.isZero(0.0)) continue;
-        const RigidBody& body = scene.barrier->segments[i].body;
+        const RigidBody& body = scene.barrier->moving_elements[i].body;
         std::array<Vec3, 4> arm;
         for (std::size_t c = 0; c < arm.size(); ++c)
             arm[c] = {slab.arm[c].x(), slab.arm[c].y(), 0.0};
         const Vec3& v = slab.motion;
         friction = slide_friction(body, arm, slab.limit, {Vec3(v.x(), v.y(), 0.0), Vec3(0.0, 0.0, v.z())});
-        memory.segment_motions[i].head<2>() += body.inverse_mass * friction.force.head<2>();
-        memory.segment_motions[i].z() += body.inverse_inertia(2, 2) * friction.torque.z();
+        memory.element_motions[i].head<2>() += body.inverse_mass * friction.force.head<2>();
+        memory.element_motions[i].z() += body.inverse_inertia(2, 2) * friction.torque.z();
     }
 }
 
 }  // namespace
 
-bool pushes_segment(const RigidContact& contact) {
+bool pushes_moving_element(const RigidContact& contact) {
     return contact.source == ContactSource::core && contact.other >= 0;
 }
 
-bool meets_segments(const std::vector<RigidContact>& contacts) {
-    return std::any_of(contacts.begin(), contacts.end(), pushes_segment);
+bool meets_moving_element(const std::vector<RigidContact>& contacts) {
+    return std::any_of(contacts.begin(), contacts.end(), pushes_moving_element);
 }
 
 void find_base_reactions(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
     if (scene.tilts()) return find_plastic_moments(scene, by, state, memory);
     find_limits(scene, by.pressed, memory.kick, memory.limits);
     list_slabs(scene, by, state, memory);
-    memory.segment_motions.resize(state.segments.size());
-    memory.kick.on_base.resize(state.segments.size());
-    memory.kick.on_pins.assign(state.segments.size(), {});
-    if (!is_pinned(scene) || state.segments.size() == 1) return find_loose_friction(scene, memory);
+    memory.element_motions.resize(state.moving_elements.size());
+    memory.kick.on_base.resize(state.moving_elements.size());
+    memory.kick.on_pins.assign(state.moving_elements.size(), {});
+    if (!is_pinned(scene) || state.moving_elements.size() == 1) return find_loose_friction(scene, memory);
     list_pins(scene, state, memory.pins);
     find_pinned_friction(by, memory);
 }
 
-void move_segments(const Scene& scene, const KickMemory& memory, State& state) {
+void move_elements(const Scene& scene, const KickMemory& memory, State& state) {
     if (scene.tilts()) return move_posts(scene, memory, state);
     // Fraction of the speed that friction can remove from a segment, below which a remaining speed is rounding.
     constexpr double left_over = 1e-4;
-    for (std::size_t i = 0; i < state.segments.size(); ++i) {
-        const Segment& segment = scene.barrier->segments[i];
-        const Vec3& motion = memory.segment_motions[i];
-        BodyState& body = state.segments[i];
+    for (std::size_t i = 0; i < state.moving_elements.size(); ++i) {
+        const MovingElement& element = scene.barrier->moving_elements[i];
+        const Vec3& motion = memory.element_motions[i];
+        BodyState& body = state.moving_elements[i];
         const double fastest =
-            motion.head<2>().norm() + std::abs(motion.z()) * segment.corner[0].head<2>().norm();
-        const bool rests = fastest <= left_over * segment.body.inverse_mass * memory.limits[i];
+            motion.head<2>().norm() + std::abs(motion.z()) * element.corner[0].head<2>().norm();
+        const bool rests = fastest <= left_over * element.body.inverse_mass * memory.limits[i];
         body.velocity = body.angular_momentum = Vec3::Zero();
         if (rests) continue;
         body.velocity.head<2>() = motion.head<2>();
-        body.angular_momentum.z() = segment.body.inertia(2, 2) * motion.z();
+        body.angular_momentum.z() = element.body.inertia(2, 2) * motion.z();
     }
 }
 
 std::size_t add_pin_rows(const Scene& scene, const State& state, const KickMemory& memory,
                          std::vector<RigidContact>& rows) {
-    if (!is_pinned(scene) || state.segments.size() == 1) return 0;
+    if (!is_pinned(scene) || state.moving_elements.size() == 1) return 0;
     const std::size_t before = rows.size(), first = scene.vehicle->joints.size();
     const std::size_t units = state.units.size();
-    for (std::size_t i = 0; i + 1 < state.segments.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < state.moving_elements.size(); ++i) {
         if (!memory.chain.is_awake(i) || !memory.chain.is_awake(i + 1)) continue;
         const std::size_t row = rows.size();
-        find_joint_rows(scene.joints[first + i], first + i, state.segments[i], state.segments[i + 1], rows);
-        const auto motion_at = [&](std::size_t segment, const Vec3& arm) {
-            const Vec3& motion = memory.segment_motions[segment];
+        find_joint_rows(scene.joints[first + i], first + i, state.moving_elements[i],
+                        state.moving_elements[i + 1], rows);
+        const auto motion_at = [&](std::size_t element, const Vec3& arm) {
+            const Vec3& motion = memory.element_motions[element];
             return Vec3(motion.x() - arm.y() * motion.z(), motion.y() + arm.x() * motion.z(), 0.0);
         };
         for (std::size_t r = row; r < rows.size(); ++r)

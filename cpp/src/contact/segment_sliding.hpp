@@ -8,19 +8,19 @@
 
 namespace birm3d {
 
-// Is it a point where the rigid body meets a segment?
-bool pushes_segment(const RigidContact& contact);
+// Is it a point where the rigid body meets a moving element?
+bool pushes_moving_element(const RigidContact& contact);
 
-// Does the rigid body meet a segment?
-bool meets_segments(const std::vector<RigidContact>& contacts);
+// Does the rigid body meet a moving element?
+bool meets_moving_element(const std::vector<RigidContact>& contacts);
 
 // Finds ground friction and pin impulses, or the impulses of plastic moments, for the present impulses of
-// `memory.kick.contacts` and `memory.kick.on_cores`. Stores them in `memory.kick` and `memory.segment_motions`. `state` has
+// `memory.kick.contacts` and `memory.kick.on_cores`. Stores them in `memory.kick` and `memory.element_motions`. `state` has
 // the elements' motions without any of these.
 void find_base_reactions(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory);
 
 // Sets the elements' motions to those found. One that friction or its plastic moment holds gets exactly zero velocity.
-void move_segments(const Scene& scene, const KickMemory& memory, State& state);
+void move_elements(const Scene& scene, const KickMemory& memory, State& state);
 
 // Appends rows of the pins between segments that move or are pushed, with the speeds that they were found to have.
 // Returns how many.

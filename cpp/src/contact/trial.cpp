@@ -8,8 +8,6 @@ namespace birm3d {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 void clear(ContactImpulses& impulses) {
     std::fill(impulses.tire.begin(), impulses.tire.end(), 0.0);
     std::fill(impulses.sprung.begin(), impulses.sprung.end(), 0.0);
@@ -53,7 +51,7 @@ void Trial::restart(const Vehicle& vehicle, const State& from) {
 
 void Trial::begin(const State& from, double step) {
     static_cast<Progress&>(state) = from;
-    state.segments = from.segments;
+    state.moving_elements = from.moving_elements;
     state.time += step;
     dt = step;
     error = 0.0;

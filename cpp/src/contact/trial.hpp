@@ -39,8 +39,9 @@ struct ContactImpulses {
 // A rigid impact at one end of a step. It has no duration: its impulses are not spread over the step.
 struct Impact {
     bool happened = false;
-    std::vector<BodyState> bodies;          // (units) after an impact at the start, before one at the end
-    std::vector<BodyState> segments;        // the same of free-standing segments
+    std::vector<BodyState> bodies;  // (units) after an impact at the start, before one at the end
+    // The same of the barrier.
+    std::vector<BodyState> moving_elements;
     Energies energies;                      // the same
     std::vector<ContactImpulses> impulses;  // (units)
     std::vector<Wrench> joint_impulses;     // (joints) on the leading unit, about the joint (N s, N m s)
@@ -51,8 +52,8 @@ struct ContactKick {
     std::vector<RigidContact> contacts;
     std::vector<Wrench> on_ground;   // (units) friction impulses of tyres
     std::vector<Wrench> on_cores;    // (bodies) friction impulses of bottomed-out trusses
-    std::vector<Wrench> on_base;     // (segments) friction impulses of the ground
-    std::vector<Wrench> on_pins;     // (segments) of the pins to their neighbours
+    std::vector<Wrench> on_base;     // (moving elements) friction impulses of the ground
+    std::vector<Wrench> on_pins;     // (moving elements) of the pins to their neighbours
     std::vector<char> rolls_freely;  // (units) is the friction of its tyres left out? Empty: of no unit
 };
 
@@ -74,13 +75,13 @@ struct KickMemory {
     std::vector<Column> tire;
     Column last;
     std::vector<Wrench> on_cores, on_base;
-    // Of free-standing segments.
+    // Of moving elements.
     std::vector<PinnedSlab> slabs;
     std::vector<SlabPin> pins;
     SlabChain chain;
     Column limits;  // of friction on the ground (N s)
     std::vector<Vec3>
-        segment_motions;           // along the ground and about the vertical; of posts angular velocities
+        element_motions;           // along the ground and about the vertical; of posts angular velocities
     std::vector<char> posts_held;  // (posts that yield) do they stand still?
 };
 

@@ -63,12 +63,12 @@ bool tips(const Scene& scene, const State& state) {
     return false;
 }
 
-// Segments that friction can stop have stopped.
-bool segments_rest(const Scene& scene, const State& state) {
+// Moving elements that friction can stop have stopped.
+bool moving_elements_rest(const Scene& scene, const State& state) {
     const bool slides_on = scene.slides() && (scene.settings.gravity == 0.0 ||
                                               scene.barrier->free_standing->ground_friction == 0.0);
-    if (state.segments.empty() || slides_on) return true;
-    return fastest_segment(scene, state) == 0.0;
+    if (state.moving_elements.empty() || slides_on) return true;
+    return fastest_moving_element(scene, state) == 0.0;
 }
 
 BodyState between(const BodyState& a, const BodyState& b, double fraction) {
@@ -106,10 +106,11 @@ bool has_left(const Scene& scene, const State& state) {
             if (!(distance > 0.0)) return false;
             const Vec3 direction = from / distance;
             double away = (pose.rotation.transpose() * body.velocity).dot(from) / distance;
-            if (i < state.segments.size()) {
-                const Vec3 segment = pose.rotation.transpose() * state.segments[i].velocity;
-                away -= std::max(0.0, segment.dot(direction)) +
-                        fastest_point(scene.barrier->segments[i], state.segments[i]) - segment.norm();
+            if (i < state.moving_elements.size()) {
+                const Vec3 own_velocity = pose.rotation.transpose() * state.moving_elements[i].velocity;
+                away -= std::max(0.0, own_velocity.dot(direction)) +
+                        fastest_point(scene.barrier->moving_elements[i], state.moving_elements[i]) -
+                        own_velocity.norm();
             }
             const bool outruns = !forward && away >= rotation_speed;
             if (!(away > 0.0 && (outruns || distance > unit.trusses.reach))) return false;
@@ -119,7 +120,7 @@ bool has_left(const Scene& scene, const State& state) {
 }
 
 bool is_over(const Scene& scene, const State& state) {
-    return has_left(scene, state) && !tips(scene, state) && segments_rest(scene, state);
+    return has_left(scene, state) && !tips(scene, state) && moving_elements_rest(scene, state);
 }
 
 double time_of_decision(const Scene& scene, std::span<const BodyState> before, double released, double dt,

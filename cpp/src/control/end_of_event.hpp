@@ -16,7 +16,7 @@ bool touches(const State& state);
 // still has to pass the element.
 bool has_left(const Scene& scene, const State& state);
 
-// Has the vehicle left the barrier for good, with no wheel rising and all segments at rest?
+// Has the vehicle left the barrier for good, with no wheel rising and all moving elements at rest?
 bool is_over(const Scene& scene, const State& state);
 
 // The instant within a step of dt from which the outcome is decided (s). It does not depend on the length of the

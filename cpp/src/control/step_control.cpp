@@ -15,8 +15,6 @@ namespace birm3d {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // Least divisor: an estimated error may be zero (m/s).
 constexpr double least_error = 1e-300;
 
@@ -28,7 +26,7 @@ double allowed_error(const Scene& scene) {
 // Body `b` at an end of a step: inside the step where there was an impact at that end, else as the state has it.
 const BodyState& body_within(const Impact& impact, const State& state, std::size_t b) {
     if (!impact.happened) return body_state(state, b);
-    return b < impact.bodies.size() ? impact.bodies[b] : impact.segments[b - impact.bodies.size()];
+    return b < impact.bodies.size() ? impact.bodies[b] : impact.moving_elements[b - impact.bodies.size()];
 }
 
 // Mean velocity of the pushing nodes along their normals, weighted by their forces (m/s); negative =
@@ -44,12 +42,12 @@ double separation_speed(const Scene& scene, const State& state, const Impact& im
             const int other = body_of_obstacle(scene, load.obstacle);
             if (other < 0) continue;
             const auto b = static_cast<std::size_t>(other);
-            const BodyState& segment = body_within(impact, state, b);
-            const Twist segment_motion = twist(rigid_body(scene, b), segment);
-            const Vec3 arm = unit.body.position - segment.position;
+            const BodyState& element = body_within(impact, state, b);
+            const Twist element_motion = twist(rigid_body(scene, b), element);
+            const Vec3 arm = unit.body.position - element.position;
             power -=
-                load.contact.force.dot(segment_motion.velocity + segment_motion.angular_velocity.cross(arm)) +
-                load.contact.torque.dot(segment_motion.angular_velocity);
+                load.contact.force.dot(element_motion.velocity + element_motion.angular_velocity.cross(arm)) +
+                load.contact.torque.dot(element_motion.angular_velocity);
         }
         force += unit.skin.normal_force;
     }
@@ -148,7 +146,8 @@ double time_to_release(const LoadHistory& history) {
 double time_to_stop(const Scene& scene, const State& state, std::size_t post) {
     const auto pushes = [=](const UnitState& unit) { return pushes_on(unit, post); };
     if (std::any_of(state.units.begin(), state.units.end(), pushes)) return infinity;
-    return state.segments[post].angular_momentum.norm() / scene.barrier->segments[post].plastic_moment;
+    return state.moving_elements[post].angular_momentum.norm() /
+           scene.barrier->moving_elements[post].plastic_moment;
 }
 
 // A step that ends when the next untouched post, or the next untouched, straight sliding segment, comes to rest (s): its
@@ -156,15 +155,15 @@ double time_to_stop(const Scene& scene, const State& state, std::size_t post) {
 double time_to_stop(const Scene& scene, const State& state) {
     double earliest = infinity;
     if (scene.tilts())
-        for (std::size_t i = 0; i < state.segments.size(); ++i) {
+        for (std::size_t i = 0; i < state.moving_elements.size(); ++i) {
             const double time = time_to_stop(scene, state, i);
             if (time > tolerance::shortest_stop) earliest = std::min(earliest, time);
         }
     if (!scene.slides() || touches(state)) return earliest;
     const double deceleration = scene.settings.gravity * scene.barrier->free_standing->ground_friction;
     if (!(deceleration > 0.0)) return earliest;
-    for (const BodyState& segment : state.segments) {
-        const double time = segment.velocity.norm() / deceleration;
+    for (const BodyState& element : state.moving_elements) {
+        const double time = element.velocity.norm() / deceleration;
         if (time > tolerance::shortest_stop) earliest = std::min(earliest, time);
     }
     return earliest;
@@ -181,7 +180,7 @@ double quantize_step(double dt) {
 // Longest step for resting contacts, joints and elements that move (s). They are integrated to second order without an
 // error estimate, so that the step follows from the tolerance alone. Posts that stand still need none.
 double longest_step(const Scene& scene, const Trial& tried) {
-    const bool moves = scene.slides() || (scene.tilts() && fastest_segment(scene, tried.state) > 0.0);
+    const bool moves = scene.slides() || (scene.tilts() && fastest_moving_element(scene, tried.state) > 0.0);
     if (!tried.body_rests() && scene.joints.empty() && !moves) return tolerance::longest_step;
     return tolerance::longest_resting_step *
            std::sqrt(std::min(1.0, scene.settings.tolerance / Settings{}.tolerance));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "birm3d/base/tolerances.hpp"
@@ -15,8 +14,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Position of an obstacle and relative motion of the unit (body axes).
 struct RelativeObstacle {
@@ -62,12 +59,12 @@ double untouched_step_of(const TrussBlockState& block, const std::vector<Relativ
 double untouched_step(const Scene& scene, const State& state, double longest) {
     std::vector<RelativeObstacle> near;
     std::vector<std::size_t> about;
-    const double segments = fastest_segment(scene, state);
+    const double element_speed = fastest_moving_element(scene, state);
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const UnitState& unit = state.units[u];
         const Unit& model = scene.vehicle->units[u];
         const TrussMesh& mesh = model.trusses;
-        const double fastest = fastest_point(model, unit.body) + segments;
+        const double fastest = fastest_point(model, unit.body) + element_speed;
         if (!(fastest > 0.0)) continue;
         const auto reaches = [&](const Shape& shape, const Placement& in_shape, const Box& box) {
             return within_reach(shape, in_shape, box, longest * fastest);
@@ -121,11 +118,11 @@ double passing_time(const Shape& shape, const Pose& pose, const Vec3& velocity, 
 
 double passing_step(const Scene& scene, const State& state, double longest) {
     std::vector<std::size_t> about;
-    const double segments = fastest_segment(scene, state);
+    const double element_speed = fastest_moving_element(scene, state);
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const BodyState& body = state.units[u].body;
         const Unit& unit = scene.vehicle->units[u];
-        const double speed = fastest_point(unit, body) + segments;
+        const double speed = fastest_point(unit, body) + element_speed;
         if (!(longest * speed > passing_fraction * scene.thinnest)) continue;
         const double rotation_speed = speed - body.velocity.norm();
         const Box& all = state.units[u].trusses.around;

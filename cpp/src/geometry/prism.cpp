@@ -13,8 +13,6 @@ namespace {
 
 using Point = Eigen::Vector2d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 double cross(const Point& a, const Point& b) {
     return a.x() * b.y() - a.y() * b.x();
 }

@@ -4,8 +4,6 @@ namespace birm3d {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 Nearest nearest_in(const HalfSpace& plane, const Vec3& p) {
     return {plane.gap(p), plane.normal};
 }

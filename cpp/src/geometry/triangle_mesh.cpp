@@ -1,7 +1,6 @@
 #include "birm3d/geometry/triangle_mesh.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "geometry/triangle_mesh_data.hpp"
@@ -9,8 +8,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Does some triangle of the flat face hold a point of its plane?
 bool face_holds(const TriangleMeshData& mesh, std::size_t face, const Vec3& p) {

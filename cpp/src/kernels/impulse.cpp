@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -13,8 +12,6 @@ namespace birm3d {
 namespace {
 
 using Eigen::Index;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // R with R R^T = inverse inertia; zero for a body that can not be turned.
 Mat3 root_of(const ContactBody& body) {

@@ -32,7 +32,7 @@ namespace birm3d {
 enum class Freedom {
     all,
     planar,  // moves along the ground and rotates about the vertical only
-    tilt,    // tilts about a fixed foot: no inverse mass, and equal inverse inertia about two axes only
+    tilt,  // tilts about a fixed centre of rotation: no inverse mass, and equal inverse inertia about two axes only
 };
 
 // A body of the solver, world axes. Zero inverses: it can not be moved.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/block_loop.hpp"
 #include "kernels/simd_table.hpp"
@@ -10,8 +9,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Range {
     double low, high;

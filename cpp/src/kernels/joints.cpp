@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Vec3 place_of(const BodyState& body, const Vec3& place) {
     return body.position + body.orientation * place;

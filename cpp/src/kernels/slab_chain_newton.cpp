@@ -1,6 +1,5 @@
 #include <Eigen/LU>
 #include <algorithm>
-#include <limits>
 
 #include "kernels/slab_chain_columns.hpp"
 
@@ -8,14 +7,12 @@ namespace birm3d {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // Converged if friction and law differ by less than this fraction of the limit, or by rounding only. Below the third
 // number, full Newton steps are taken.
 constexpr double lawful = 1e-9, rounding = 1e-6, near_lawful = 1e-2;
 
 // Gap of a pin after the drift below which it is rounding (m).
-constexpr double closed = 1e-12;
+constexpr double closed_by_newton = 1e-12;
 
 Vec2 at(const BlockColumn& x, const BlockColumn& y, std::size_t slab) {
     return {x[slab % block_size], y[slab % block_size]};
@@ -75,7 +72,7 @@ bool SlabChain::newton(const Run& run, double soft, int most_steps, bool finish)
         if (!(missed < near_lawful)) continue;
         gap = closes ? retarget(run) : 0.0;
         const bool is_met = missed <= lawful || (missed <= rounding && missed >= before);
-        if (!finish || (is_met && (gap <= closed || gap >= gap_before))) return true;
+        if (!finish || (is_met && (gap <= closed_by_newton || gap >= gap_before))) return true;
     }
     return false;
 }

@@ -18,9 +18,9 @@ Vec3 end_of(const Element& element, double y) {
 }
 
 // Solids of the elements; refuses those that can not stand free, and pinned ones whose ends do not meet.
-std::vector<Segment> segments_of(const std::vector<Element>& elements, const FreeStanding& free) {
+std::vector<MovingElement> segments_of(const std::vector<Element>& elements, const FreeStanding& free) {
     require_not_negative("ground_friction", free.ground_friction);
-    std::vector<Segment> segments;
+    std::vector<MovingElement> segments;
     for (std::size_t i = 0; i < elements.size(); ++i) {
         const std::string name = "elements[" + std::to_string(i) + "]";
         const auto* prism = std::get_if<Prism>(&elements[i].shape);
@@ -43,8 +43,8 @@ std::vector<Segment> segments_of(const std::vector<Element>& elements, const Fre
     return segments;
 }
 
-std::vector<Segment> posts_of(const std::vector<Element>& elements, const YieldingPosts& yielding) {
-    std::vector<Segment> posts;
+std::vector<MovingElement> posts_of(const std::vector<Element>& elements, const YieldingPosts& yielding) {
+    std::vector<MovingElement> posts;
     for (std::size_t i = 0; i < elements.size(); ++i) {
         const auto* post = std::get_if<Post>(&elements[i].shape);
         if (post == nullptr || post->opens || elements[i].part_of)
@@ -95,8 +95,8 @@ Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& o
         top_edge_of(*prism);
     }
     if (free_standing && yielding) refuse("yielding", "none where it is free-standing", "posts");
-    if (free_standing) segments = segments_of(elements, *free_standing);
-    if (yielding) segments = posts_of(elements, *yielding);
+    if (free_standing) moving_elements = segments_of(elements, *free_standing);
+    if (yielding) moving_elements = posts_of(elements, *yielding);
 }
 
 Barrier Barrier::wall(double friction, const Vec3& origin, double heading) {

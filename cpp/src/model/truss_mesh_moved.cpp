@@ -19,7 +19,7 @@ Bounds bounds_of(const BlockColumn& values) {
     return found;
 }
 
-Box box_around(const BlockColumn& x, const BlockColumn& y, const BlockColumn& z) {
+Box box_of_columns(const BlockColumn& x, const BlockColumn& y, const BlockColumn& z) {
     const Bounds along_x = bounds_of(x), along_y = bounds_of(y), along_z = bounds_of(z);
     const Vec3 low(along_x.low, along_y.low, along_z.low), high(along_x.high, along_y.high, along_z.high);
     return {0.5 * (low + high), 0.5 * (high - low)};
@@ -70,8 +70,8 @@ TrussMesh TrussMesh::moved(const Vec3& origin) const {
     for (std::size_t b = 0; b < blocks; ++b) {
         to.push_back(moved_block(block[b], origin));
         const TrussBlock& at = to.back();
-        nodes.push_back(box_around(at.node_x, at.node_y, at.node_z));
-        places.push_back(box_around(at.anchor_x, at.anchor_y, at.anchor_z));
+        nodes.push_back(box_of_columns(at.node_x, at.node_y, at.node_z));
+        places.push_back(box_of_columns(at.anchor_x, at.anchor_y, at.anchor_z));
         stiffness.push_back(stiffness_of(at));
         reach_2 = std::max(reach_2, reach_squared(at.node_x, at.node_y, at.node_z));
         if (b < skin_blocks)

@@ -1,6 +1,5 @@
 #include "birm3d/record/extremes.hpp"
 
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,8 +10,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // The first two rows are the interval.
 double interval_of(const History& history) {
@@ -70,7 +67,8 @@ Extremes extremes_of(const History& history, const Vehicle& vehicle, const Barri
     if (wanted.joint && !history.joints.empty()) found.joint = greatest_joint_loads(history);
     if (!barrier) return found;
     if (wanted.penetration) found.penetration = greatest_penetration(history, vehicle, *barrier);
-    if (wanted.segments && !history.segments.empty()) found.segments = greatest_movement(history, *barrier);
+    if (wanted.moving_elements && !history.moving_elements.empty())
+        found.moving_elements = greatest_movement(history, *barrier);
     if (wanted.element_loads) found.element_loads = greatest_element_loads(history, *barrier);
     return found;
 }

@@ -1,7 +1,6 @@
 // Extremes of how the first unit moves and turns.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -16,8 +15,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // The last instant that counts where the separation does.
 double end_of(const Event& event) {

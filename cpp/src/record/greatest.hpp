@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "birm3d/base/types.hpp"
+
 namespace birm3d {
 
 // Eight columns, so that a loop over many numbers fills whole registers.
@@ -53,7 +55,6 @@ class GreatestOf {
 
   private:
     static constexpr double apart = 1e-12;
-    static constexpr double infinity = std::numeric_limits<double>::infinity();
 
     double margin_at(double key) const { return apart * std::max(std::abs(key), scale_); }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "scene/obstacles.hpp"
@@ -10,8 +9,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Bounds of a shape, own axes (m). A post that has a top is cut off at its foot, because one that tilts has its endless lower
 // end in the ground.
@@ -83,10 +80,11 @@ double distance_past_line(const Scene& scene, const State& state, const Event& e
     const Vec3& center = state.units.front().body.position;
     if (!scene.slides() || runs_along_line(scene)) return center.dot(event.towards) - event.line;
     double nearest = infinity, past = 0.0;
-    for (std::size_t i = 0; i < state.segments.size(); ++i) {
+    for (std::size_t i = 0; i < state.moving_elements.size(); ++i) {
         const Pose pose = pose_of(scene, i, state);
         const Vec3 local = pose.rotation.transpose() * (center - pose.position);
-        const double beyond = std::max(0.0, std::abs(local.y()) - scene.barrier->segments[i].half_length);
+        const double beyond =
+            std::max(0.0, std::abs(local.y()) - scene.barrier->moving_elements[i].half_length);
         const double distance = std::hypot(local.x(), beyond);
         if (distance < nearest) nearest = distance, past = local.x();
     }

@@ -42,13 +42,13 @@ void Recorder::restart(const Scene& scene, const State& start) {
         width_ += unit_width(unit);
         none.emplace_back(unit.wheels.size());
     }
-    width_ += joint_width * scene.vehicle->joints.size() + segment_width * start.segments.size();
+    width_ += joint_width * scene.vehicle->joints.size() + element_width * start.moving_elements.size();
     require_room(scene, width_);
     values_.clear();
     obstacles_.clear();
     add_row(scene, start.time, start.energies,
-            {start.units, nullptr, start.segments, none, std::vector<Wrench>(scene.vehicle->joints.size()),
-             false});
+            {start.units, nullptr, start.moving_elements, none,
+             std::vector<Wrench>(scene.vehicle->joints.size()), false});
 }
 
 bool Recorder::full() const {
@@ -65,7 +65,7 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
         const std::size_t before = values_.size() - width_;
         const std::size_t last = rows() - 1;
         add_row(scene, values_[before + at_time], accepted.at_start.energies,
-                {state.units, &accepted.at_start.bodies, accepted.at_start.segments,
+                {state.units, &accepted.at_start.bodies, accepted.at_start.moving_elements,
                  accepted.at_start.impulses, accepted.at_start.joint_impulses, false});
         const double* from = values_.data() + before + at_units;
         double* to = values_.data() + values_.size() - width_ + at_units;
@@ -83,11 +83,12 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
     }
     const Impact& end = accepted.at_end;
     add_row(scene, state.time, end.happened ? end.energies : state.energies,
-            {state.units, end.happened ? &end.bodies : nullptr, end.happened ? end.segments : state.segments,
-             accepted.impulses, accepted.joint_impulses, true});
+            {state.units, end.happened ? &end.bodies : nullptr,
+             end.happened ? end.moving_elements : state.moving_elements, accepted.impulses,
+             accepted.joint_impulses, true});
     if (end.happened)
         add_row(scene, state.time, state.energies,
-                {state.units, nullptr, state.segments, end.impulses, end.joint_impulses, false});
+                {state.units, nullptr, state.moving_elements, end.impulses, end.joint_impulses, false});
 }
 
 Recorder::ObstacleRow& Recorder::obstacle_row(std::size_t row, std::size_t obstacle) {
@@ -157,13 +158,13 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e, const
         put(row + 3, joint.torque);
         row += joint_width;
     }
-    for (std::size_t i = 0; i < loads.segments.size(); ++i) {
-        const BodyState& body = loads.segments[i];
-        put(row + at_segment_position, body.position);
-        std::copy_n(body.orientation.coeffs().data(), 4, row + at_segment_orientation);
-        put(row + at_segment_velocity, body.velocity);
-        row[at_segment_spin] = angular_velocity(scene.barrier->segments[i].body, body).z();
-        row += segment_width;
+    for (std::size_t i = 0; i < loads.moving_elements.size(); ++i) {
+        const BodyState& body = loads.moving_elements[i];
+        put(row + at_element_position, body.position);
+        std::copy_n(body.orientation.coeffs().data(), 4, row + at_element_orientation);
+        put(row + at_element_velocity, body.velocity);
+        row[at_element_spin] = angular_velocity(scene.barrier->moving_elements[i].body, body).z();
+        row += element_width;
     }
 }
 

@@ -34,13 +34,13 @@ enum ObstacleOffset : std::size_t {
 };
 // Behind the units: for each joint force and moment impulse.
 constexpr std::size_t joint_width = 6;
-// Behind the joints: for each free-standing segment its motion.
-enum SegmentOffset : std::size_t {
-    at_segment_position = 0,
-    at_segment_orientation = 3,
-    at_segment_velocity = 7,
-    at_segment_spin = 10,
-    segment_width = 11
+// Behind the joints: for each moving element its motion.
+enum MovingElementOffset : std::size_t {
+    at_element_position = 0,
+    at_element_orientation = 3,
+    at_element_velocity = 7,
+    at_element_spin = 10,
+    element_width = 11
 };
 
 inline std::size_t unit_width(const Unit& unit) {

@@ -38,13 +38,13 @@ void Recorder::resample(const Scene& scene, const Channels& wanted, History& his
     if (wanted.energy_residual) find_energy_residual(output, history);
     resample_units(output, scene, wanted, history);
     history.joints.clear();
-    history.segments.clear();
+    history.moving_elements.clear();
     if (wanted.elements)
         resample_obstacles(scene, output, history);
     else
         history.obstacles.clear();
     if (wanted.joints) resample_joints(scene, output, history);
-    if (wanted.segments) resample_segments(scene, output, history);
+    if (wanted.moving_elements) resample_moving_elements(scene, output, history);
 }
 
 void Recorder::resample_energies(const OutputInstants& output, History& history) const {

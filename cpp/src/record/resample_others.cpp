@@ -32,7 +32,7 @@ Column slips(const Joint& joint, const History& history) {
 
 void Recorder::resample_joints(const Scene& scene, const OutputInstants& output, History& history) const {
     const std::vector<Joint>& joints = scene.vehicle->joints;
-    const std::size_t first = width_ - segment_width * scene.free_segments() - joint_width * joints.size(),
+    const std::size_t first = width_ - element_width * scene.moving_count() - joint_width * joints.size(),
                       count = history.time.size();
     for (std::size_t j = 0; j < joints.size(); ++j) {
         JointHistory joint;
@@ -146,23 +146,24 @@ void Recorder::resample_obstacles(const Scene& scene, const OutputInstants& outp
     }
 }
 
-// Between rows a segment is moved by the recorded load of the vehicle. Ground and pins make up the rest of its change
+// Between rows a moving element is moved by the recorded load of the vehicle. Ground and pins make up the rest of its change
 // of velocity, which is spread evenly over the step. So the momentum of all bodies adds up at every instant.
-void Recorder::resample_segments(const Scene& scene, const OutputInstants& output, History& history) const {
-    const std::size_t segments = scene.free_segments(), count = history.time.size();
-    const std::size_t first = width_ - segment_width * segments;
+void Recorder::resample_moving_elements(const Scene& scene, const OutputInstants& output,
+                                        History& history) const {
+    const std::size_t moving_elements = scene.moving_count(), count = history.time.size();
+    const std::size_t first = width_ - element_width * moving_elements;
     static constexpr std::array<double, obstacle_width> nothing{};
-    for (std::size_t i = 0; i < segments; ++i) {
-        const RigidBody& body = scene.barrier->segments[i].body;
-        const double height = scene.barrier->segments[i].mass_center_height;
+    for (std::size_t i = 0; i < moving_elements; ++i) {
+        const RigidBody& body = scene.barrier->moving_elements[i].body;
+        const double height = scene.barrier->moving_elements[i].mass_center_height;
         std::vector<const double*> loads(rows(), nothing.data());
         for (const ObstacleRow& row : obstacles_)
             if (row.obstacle == i) loads[row.row] = row.values.data();
         const auto at = [&](std::size_t row) {
-            return values_.data() + row * width_ + first + i * segment_width;
+            return values_.data() + row * width_ + first + i * element_width;
         };
 
-        SegmentHistory segment;
+        MovingElementHistory element;
         std::size_t span = 0;
         double yaw = 0.0, last_angle = 0.0;
         for (std::size_t k = 0; k < count; ++k) {
@@ -178,26 +179,26 @@ void Recorder::resample_segments(const Scene& scene, const OutputInstants& outpu
                                      load.fraction(until) * vec(load.b + at_load_impulse);
                 return body.inverse_mass * Vec3(impulse.x(), impulse.y(), 0.0);
             };
-            const Vec3 v0 = vec(a + at_segment_velocity), v1 = vec(b + at_segment_velocity);
-            const Vec3 p0 = vec(a + at_segment_position), p1 = vec(b + at_segment_position);
+            const Vec3 v0 = vec(a + at_element_velocity), v1 = vec(b + at_element_velocity);
+            const Vec3 p0 = vec(a + at_element_position), p1 = vec(b + at_element_position);
             const bool at_rest = v0.isZero(0.0) && v1.isZero(0.0);  // throughout the step
-            segment.velocity.push_back(
+            element.velocity.push_back(
                 at_rest || s == 1.0 ? v1 : Vec3(v0 + pushed(t) + s * (v1 - v0 - pushed(dt))));
-            segment.position.push_back(p0 + (p1 - p0) * (s * s * (3.0 - 2.0 * s)) +
+            element.position.push_back(p0 + (p1 - p0) * (s * s * (3.0 - 2.0 * s)) +
                                        dt * s * (1.0 - s) * ((1.0 - s) * v0 - s * v1) + scene.base -
                                        height * Vec3::UnitZ());
-            segment.yaw_rate.push_back((1.0 - s) * a[at_segment_spin] + s * b[at_segment_spin]);
-            const Eigen::Map<const Eigen::Vector4d> qa(a + at_segment_orientation),
-                qb(b + at_segment_orientation);
+            element.yaw_rate.push_back((1.0 - s) * a[at_element_spin] + s * b[at_element_spin]);
+            const Eigen::Map<const Eigen::Vector4d> qa(a + at_element_orientation),
+                qb(b + at_element_orientation);
             const Eigen::Vector4d q = (1.0 - s) * qa + s * (qa.dot(qb) < 0.0 ? -1.0 : 1.0) * qb;
             if (scene.tilts())
-                segment.axis.push_back(Quat(q[3], q[0], q[1], q[2]).normalized() * Vec3::UnitZ());
+                element.axis.push_back(Quat(q[3], q[0], q[1], q[2]).normalized() * Vec3::UnitZ());
             const double angle = scene.tilts() ? 0.0 : 2.0 * std::atan2(q[2], q[3]);
             if (k > 0) yaw += std::remainder(angle - last_angle, 2.0 * std::numbers::pi);
             last_angle = angle;
-            segment.yaw.push_back(yaw);
+            element.yaw.push_back(yaw);
         }
-        history.segments.push_back(std::move(segment));
+        history.moving_elements.push_back(std::move(element));
     }
 }
 

@@ -14,7 +14,7 @@ namespace birm3d {
 namespace {
 
 bool may_slide(const Scene& scene, const State& state) {
-    return state.touched && state.segments.empty() && !runs_along_line(scene);
+    return state.touched && state.moving_elements.empty() && !runs_along_line(scene);
 }
 
 // Kinetic energy of the vehicle less that of its motion along the line (J).

@@ -8,17 +8,17 @@ namespace birm3d {
 
 const RigidBody& rigid_body(const Scene& scene, std::size_t body) {
     const std::size_t units = scene.vehicle->units.size();
-    return body < units ? scene.vehicle->units[body].body : scene.barrier->segments[body - units].body;
+    return body < units ? scene.vehicle->units[body].body : scene.barrier->moving_elements[body - units].body;
 }
 
 const BodyState& body_state(const State& state, std::size_t body) {
     const std::size_t units = state.units.size();
-    return body < units ? state.units[body].body : state.segments[body - units];
+    return body < units ? state.units[body].body : state.moving_elements[body - units];
 }
 
 BodyState& body_state(State& state, std::size_t body) {
     const std::size_t units = state.units.size();
-    return body < units ? state.units[body].body : state.segments[body - units];
+    return body < units ? state.units[body].body : state.moving_elements[body - units];
 }
 
 void list_body_states(const State& state, std::vector<BodyState>& bodies) {
@@ -59,12 +59,12 @@ double tilt_of(const BodyState& post) {
 }
 
 int body_of_obstacle(const Scene& scene, std::size_t obstacle) {
-    return obstacle < scene.free_segments() ? static_cast<int>(scene.vehicle->units.size() + obstacle) : -1;
+    return obstacle < scene.moving_count() ? static_cast<int>(scene.vehicle->units.size() + obstacle) : -1;
 }
 
-double fastest_point(const Segment& segment, const BodyState& body) {
+double fastest_point(const MovingElement& element, const BodyState& body) {
     if (body.velocity.isZero(0.0) && body.angular_momentum.isZero(0.0)) return 0.0;
-    return body.velocity.norm() + angular_velocity(segment.body, body).norm() * segment.reach;
+    return body.velocity.norm() + angular_velocity(element.body, body).norm() * element.reach;
 }
 
 }  // namespace birm3d

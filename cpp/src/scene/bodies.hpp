@@ -8,7 +8,7 @@
 namespace birm3d {
 
 inline std::size_t body_count(const State& state) {
-    return state.units.size() + state.segments.size();
+    return state.units.size() + state.moving_elements.size();
 }
 const RigidBody& rigid_body(const Scene& scene, std::size_t body);
 const BodyState& body_state(const State& state, std::size_t body);
@@ -26,14 +26,15 @@ int body_of_obstacle(const Scene& scene, std::size_t obstacle);
 // The part of a torque that tilts a post: square to its own axis.
 Vec3 tilting_part(const BodyState& post, const Vec3& torque);
 
-// Of a post about its foot, world axes: the same about all axes that are square to its own, and zero about that (1/(kg m^2)).
+// Of a post about its centre of rotation, world axes: the same about all axes that are square to its own, and zero about
+// that (1/(kg m^2)).
 Mat3 inverse_inertia_of_post(const RigidBody& body, const BodyState& post);
 
-// Angle of a post's own axis to the vertical (rad). `axis`: unit vector from its foot to its top.
+// Angle of a post's own axis to the vertical (rad). `axis`: unit vector along it, upwards.
 double tilt_of(const Vec3& axis);
 double tilt_of(const BodyState& post);
 
-// Fastest any point of a segment moves (m/s).
-double fastest_point(const Segment& segment, const BodyState& body);
+// Fastest any point of a moving element moves (m/s).
+double fastest_point(const MovingElement& element, const BodyState& body);
 
 }  // namespace birm3d

@@ -19,8 +19,6 @@ namespace birm3d {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // How far the barrier reaches along `direction` (m).
 double extent(const std::vector<Obstacle>& elements, const Vec3& direction) {
     double most = -infinity;
@@ -174,7 +172,8 @@ Vec3 direction_of_line(const Scene& scene) {
     return {-std::sin(heading), std::cos(heading), 0.0};
 }
 
-bool runs_along_line(const Scene& scene) {
+// Is the path so nearly along the line that the place where they meet would have no digits left?
+bool never_meets_line(const Scene& scene) {
     return std::abs(std::sin(scene.approach.angle)) <= 1e-12;
 }
 
@@ -184,7 +183,7 @@ bool runs_along_line(const Scene& scene) {
 Vec3 foot_of_path(const Scene& scene) {
     const Vec3 line = direction_of_line(scene);
     const double offset = scene.approach.offset;
-    if (runs_along_line(scene)) return offset * Vec3(line.y(), -line.x(), 0.0);
+    if (never_meets_line(scene)) return offset * Vec3(line.y(), -line.x(), 0.0);
     const Vec3 origin = scene.barrier ? scene.barrier->origin : Vec3::Zero();
     return difference_as_written(offset, origin.dot(line), origin.head<2>().norm()) * line;
 }
@@ -212,7 +211,7 @@ void Scene::set_approach(const Approach& a) {
     if (!duration && !(a.speed > 0.0)) refuse("duration", "given (s) where the vehicle stands still", "none");
     approach = a;
     const bool anywhere = !barrier || is_endless(*barrier);
-    from_origin = anywhere && !runs_along_line(*this) ? foot_of_path(*this) : Vec3(Vec3::Zero());
+    from_origin = anywhere && !never_meets_line(*this) ? foot_of_path(*this) : Vec3(Vec3::Zero());
     const Vec3 origin = barrier ? barrier->origin : Vec3::Zero();
     base = Vec3(origin.x(), origin.y(), 0.0) + from_origin;
 }
@@ -236,13 +235,14 @@ State Scene::initial_state() const {
 void Scene::start(State& state) const {
     state.reset(*vehicle);
     if (barrier) state.was_near.assign(barrier->elements.size(), char{0});
-    for (std::size_t i = 0; i < free_segments(); ++i) {
+    for (std::size_t i = 0; i < moving_count(); ++i) {
         const Element& element = barrier->elements[i];
-        BodyState segment;
-        segment.orientation = from_roll_pitch_yaw({0.0, 0.0, element.heading});
-        segment.position = element.position +
-                           (barrier->origin.z() + barrier->segments[i].mass_center_height) * Vec3::UnitZ();
-        state.segments.push_back(segment);
+        BodyState moving;
+        moving.orientation = from_roll_pitch_yaw({0.0, 0.0, element.heading});
+        moving.position =
+            element.position +
+            (barrier->origin.z() + barrier->moving_elements[i].mass_center_height) * Vec3::UnitZ();
+        state.moving_elements.push_back(moving);
     }
     const double yaw = yaw_of_path(*this);
     const Vec3 heading = this->heading();

@@ -1,7 +1,6 @@
 #include "scene/indentation_gaps.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "kernels/integrate.hpp"
@@ -10,8 +9,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // A block or a group of blocks with a lower bound of its gaps.
 struct Bound {

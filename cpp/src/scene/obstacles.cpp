@@ -1,7 +1,6 @@
 #include "scene/obstacles.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 
 #include "kernels/detect.hpp"
@@ -11,8 +10,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Points of a block and a box around them.
 struct Points {
@@ -39,18 +36,18 @@ double nearest_in_blocks(const Shape& shape, const Placement& in_shape, std::siz
 
 Pose pose_of(const Scene& scene, std::size_t i, const State& state) {
     const Obstacle& obstacle = scene.obstacles[i];
-    if (i >= state.segments.size()) return {obstacle.rotation, obstacle.position};
-    const BodyState& segment = state.segments[i];
-    return {segment.orientation.toRotationMatrix(),
-            segment.position - scene.barrier->segments[i].mass_center_height * Vec3::UnitZ()};
+    if (i >= state.moving_elements.size()) return {obstacle.rotation, obstacle.position};
+    const BodyState& element = state.moving_elements[i];
+    return {element.orientation.toRotationMatrix(),
+            element.position - scene.barrier->moving_elements[i].mass_center_height * Vec3::UnitZ()};
 }
 
 Twist obstacle_motion(const Scene& scene, std::size_t i, const State& state, const BodyState& observer) {
-    if (i >= state.segments.size()) return {};
-    const BodyState& segment = state.segments[i];
+    if (i >= state.moving_elements.size()) return {};
+    const BodyState& element = state.moving_elements[i];
     const Mat3 R = observer.orientation.toRotationMatrix();
-    const Vec3 spin = angular_velocity(scene.barrier->segments[i].body, segment);
-    return {R.transpose() * (segment.velocity + spin.cross(observer.position - segment.position)),
+    const Vec3 spin = angular_velocity(scene.barrier->moving_elements[i].body, element);
+    return {R.transpose() * (element.velocity + spin.cross(observer.position - element.position)),
             R.transpose() * spin};
 }
 
@@ -83,10 +80,11 @@ double fastest_point(const Unit& unit, const BodyState& body) {
     return body.velocity.norm() + angular_velocity(unit.body, body).norm() * unit.trusses.reach;
 }
 
-double fastest_segment(const Scene& scene, const State& state) {
+double fastest_moving_element(const Scene& scene, const State& state) {
     double fastest = 0.0;
-    for (std::size_t i = 0; i < state.segments.size(); ++i)
-        fastest = std::max(fastest, fastest_point(scene.barrier->segments[i], state.segments[i]));
+    for (std::size_t i = 0; i < state.moving_elements.size(); ++i)
+        fastest =
+            std::max(fastest, fastest_point(scene.barrier->moving_elements[i], state.moving_elements[i]));
     return fastest;
 }
 

@@ -15,7 +15,7 @@ struct NearObstacle {
     Placement now, before;
 };
 
-// Where an obstacle stands: free-standing segments have moved.
+// Where an obstacle stands: moving elements have moved.
 struct Pose {
     Mat3 rotation;  // own axes to the world
     Vec3 position;  // of the own axes' origin, world (m)
@@ -40,8 +40,8 @@ bool pushes_on(const UnitState& unit, std::size_t obstacle);
 // Fastest any point of the unit moves (m/s).
 double fastest_point(const Unit& unit, const BodyState& body);
 
-// And of any free-standing segment of the barrier.
-double fastest_segment(const Scene& scene, const State& state);
+// And of any moving element of the barrier.
+double fastest_moving_element(const Scene& scene, const State& state);
 
 // Gap of the point that is nearest to an obstacle (m); infinite if there is none. It is exact, so that it does not
 // depend on the order of nodes in blocks. The flags choose nodes, anchors and the ground. Skin that an indentation draws in, or

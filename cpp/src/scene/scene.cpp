@@ -103,7 +103,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     if (slides() && !settings.ground) refuse("ground", "True where the barrier is free-standing", "False");
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const auto& whole = barrier->elements[i].part_of;
-        const bool joined = i > 0 && free_segments() == 0 && continues(obstacles[i].shape);
+        const bool joined = i > 0 && moving_count() == 0 && continues(obstacles[i].shape);
         obstacles[i].structure = whole    ? obstacles[*whole].structure
                                  : joined ? obstacles[i - 1].structure
                                           : i;
@@ -113,8 +113,8 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     }
     joints = vehicle->joints;
     if (slides() && barrier->free_standing->joint == SegmentJoint::pinned)
-        for (std::size_t i = 1; i < free_segments(); ++i) {
-            const Segment &one = barrier->segments[i - 1], &next = barrier->segments[i];
+        for (std::size_t i = 1; i < moving_count(); ++i) {
+            const MovingElement &one = barrier->moving_elements[i - 1], &next = barrier->moving_elements[i];
             const std::size_t body = vehicle->units.size() + i;
             joints.push_back({JointKind::pinned, body - 1, body, Vec3(0.0, one.half_length, 0.0),
                               Vec3(0.0, -next.half_length, 0.0), 0.0});
@@ -125,7 +125,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     if (std::any_of(skin_meets_ground.begin(), skin_meets_ground.end(), [](char meets) { return meets; }))
         obstacles.push_back(
             {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), settings.mu_body, ground});
-    map = ObstacleMap(obstacles, free_segments());
+    map = ObstacleMap(obstacles, moving_count());
     thinnest = std::numeric_limits<double>::infinity();
     for (const Obstacle& obstacle : obstacles)
         thinnest =

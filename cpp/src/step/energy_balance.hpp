@@ -11,7 +11,7 @@ void sum_truss_energies(State& now);
 // Energy that the springs of wheels store; zero where wheels have none.
 void sum_spring_energies(const Scene& scene, State& now);
 
-// Kinetic energy of all units and free-standing segments.
+// Kinetic energy of all units and moving elements.
 void sum_kinetic_energy(const Scene& scene, State& now);
 
 // Enters the greatest departures from both balances into `balances`. `state`: before the trial is accepted.

@@ -11,8 +11,6 @@ namespace birm3d {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 double radius_of_gyration(const RigidBody& body) {
     return std::sqrt(0.5 * body.inertia.trace() * body.inverse_mass);
 }
@@ -27,17 +25,17 @@ double inverse_mass_ratio(const Scene& scene, const RigidBody& body,
                           const std::vector<ContactLoad>& contacts) {
     double most = 0.0;
     for (const ContactLoad& contact : contacts) {
-        if (!(contact.obstacle < scene.free_segments()) || !(contact.normal_force > 0.0)) continue;
-        const Segment& segment = scene.barrier->segments[contact.obstacle];
-        if (segment.tilts()) {
+        if (!(contact.obstacle < scene.moving_count()) || !(contact.normal_force > 0.0)) continue;
+        const MovingElement& element = scene.barrier->moving_elements[contact.obstacle];
+        if (element.tilts()) {
             most = std::max(most,
-                            body.mass * segment.reach * segment.reach * segment.body.inverse_inertia(0, 0));
+                            body.mass * element.reach * element.reach * element.body.inverse_inertia(0, 0));
             continue;
         }
-        const Vec3& end = segment.corner[0];
+        const Vec3& end = element.corner[0];
         most =
-            std::max(most, body.mass * (segment.body.inverse_mass + (end.x() * end.x() + end.y() * end.y()) *
-                                                                        segment.body.inverse_inertia(2, 2)));
+            std::max(most, body.mass * (element.body.inverse_mass + (end.x() * end.x() + end.y() * end.y()) *
+                                                                        element.body.inverse_inertia(2, 2)));
     }
     return most;
 }
@@ -53,7 +51,7 @@ double velocity_error(const EffectiveInertia& inertia, const Load& departure, do
     const double force = departure.wrench.force.norm();
     const Vec3 angular_change = inertia.inverse_inertia * departure.wrench.torque;
     double change = inertia.body.inverse_mass * force + inertia.gyration * angular_change.norm();
-    if (const Segment* segment = inertia.segment) {
+    if (const MovingElement* segment = inertia.segment) {
         const double yaw_change =
             segment->body.inverse_inertia(2, 2) * std::abs(departure.reaction_torque.z());
         change += segment->body.inverse_mass * force + segment->half_length * yaw_change;

@@ -11,9 +11,9 @@ struct EffectiveInertia {
     EffectiveInertia(const RigidBody& body, const BodyState& state);
 
     const RigidBody& body;
-    double gyration;                   // radius of gyration of the unit (m)
-    Mat3 inverse_inertia;              // of the unit, world axes (1/(kg m^2))
-    const Segment* segment = nullptr;  // null: the obstacle is fixed
+    double gyration;                         // radius of gyration of the unit (m)
+    Mat3 inverse_inertia;                    // of the unit, world axes (1/(kg m^2))
+    const MovingElement* segment = nullptr;  // null: the obstacle is fixed
 };
 
 // Error by a load that departs from its extrapolation by `departure` at the end of the step: at most an eighth of the

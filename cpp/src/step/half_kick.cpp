@@ -1,7 +1,6 @@
 #include "step/half_kick.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -19,8 +18,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Rounding of the gap of a tyre that stands on the ground (m).
 constexpr double rounding_gap = 1e-12;
@@ -92,11 +89,11 @@ void add_damper_work(const std::vector<std::vector<SuspensionLoad>>& sprung, con
 }
 
 // Applies half a step of contact loads, weight and suspension to all bodies.
-// Returns the impulse with which each free-standing segment presses on the ground (N s).
+// Returns the impulse with which each moving element presses on the ground (N s).
 Column kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial) {
-    Column pressed(trial.state.segments.size());
+    Column pressed(trial.state.moving_elements.size());
     for (std::size_t i = 0; i < pressed.size(); ++i)
-        pressed[i] = half * scene.barrier->segments[i].body.mass * scene.settings.gravity;
+        pressed[i] = half * scene.barrier->moving_elements[i].body.mass * scene.settings.gravity;
     for (std::size_t u = 0; u < trial.state.units.size(); ++u) {
         const RigidBody& body = scene.vehicle->units[u].body;
         UnitState& unit = trial.state.units[u];
@@ -107,9 +104,9 @@ Column kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial
                         ? contact.higher_order.predictor
                         : difference(contact.higher_order.corrector, contact.higher_order.predictor);
             impulse += load.wrench;
-            const int segment = body_of_obstacle(scene, contact.obstacle);
-            if (segment < 0) continue;
-            kick_body(scene, static_cast<std::size_t>(segment), reaction_of(load), trial.state);
+            const int element = body_of_obstacle(scene, contact.obstacle);
+            if (element < 0) continue;
+            kick_body(scene, static_cast<std::size_t>(element), reaction_of(load), trial.state);
             pressed[contact.obstacle] += load.wrench.force.z();
         }
         impulse.force.z() -= half * body.mass * scene.settings.gravity;
@@ -146,7 +143,7 @@ void note_greatest_depth(const std::vector<RigidContact>& contacts, StepStatisti
             statistics.deepest_point = std::max(statistics.deepest_point, -contact.gap);
 }
 
-// The half kick of bodies that no rigid contact and no free-standing segment constrains.
+// The half kick of bodies that no rigid contact and no moving element constrains.
 void kick_unconstrained(const Scene& scene, Stage stage, double half, Trial& trial) {
     State& state = trial.state;
     KickMemory& memory = trial.memory;
@@ -216,7 +213,7 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     const double half = 0.5 * trial.dt;
     const bool is_first = stage == Stage::before_drift;
     find_rigid_contacts(scene, state, trial.dt, options, memory);
-    if (memory.contacts.empty() && state.segments.empty())
+    if (memory.contacts.empty() && state.moving_elements.empty())
         return kick_unconstrained(scene, stage, half, trial);
 
     // memory.before, .pushed and .after: motions before the kick, with the forces, and with the rigid contacts, too.

@@ -153,8 +153,8 @@ double correct_loads(const Scene& scene, std::size_t u, const UnitState& from, T
             loads.push_back(load_of(scene, trial.state, moved.body, contact));
         }
         // A post that yields is so light that it follows the vehicle: the error is that of the vehicle.
-        const bool slides = scene.slides() && joined.front().obstacle < scene.free_segments();
-        inertia.segment = slides ? &scene.barrier->segments[joined.front().obstacle] : nullptr;
+        const bool slides = scene.slides() && joined.front().obstacle < scene.moving_count();
+        inertia.segment = slides ? &scene.barrier->moving_elements[joined.front().obstacle] : nullptr;
         error += correct_structure(inertia, {before, befores, loads, trial.dt}, joined);
     }
     return error;

@@ -80,9 +80,9 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
     if (trial.impact_within()) return;
     note_drift_velocities(trial);
 
-    // Segments before units: units see where the segments are at the end of the step.
-    for (std::size_t i = 0; i < now.segments.size(); ++i)
-        drift(scene.barrier->segments[i].body, dt, now.segments[i]);
+    // Moving elements before units: units see where these are at the end of the step.
+    for (std::size_t i = 0; i < now.moving_elements.size(); ++i)
+        drift(scene.barrier->moving_elements[i].body, dt, now.moving_elements[i]);
     for (std::size_t u = 0; u < now.units.size(); ++u)
         move_unit(scene, u, from, trial);
     sum_truss_energies(now);
@@ -108,7 +108,7 @@ void accept(const Scene& scene, Trial& trial, State& state) {
         if (!active.empty()) unit.trusses.group(scene.vehicle->units[u].trusses, active);
     }
     static_cast<Progress&>(state) = trial.state;
-    state.segments = trial.state.segments;
+    state.moving_elements = trial.state.moving_elements;
     count_step(scene, trial, state);
 }
 

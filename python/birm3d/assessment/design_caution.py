@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
-from ..barrier.base import Barrier
+from ..barrier.barrier import Barrier
 from ..barrier.kinds import Bollards
 from ..result.element_loads import ElementLoad, touched_elements
 from ..result.low_barrier import low_barrier_lines

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..barrier.base import Barrier
+from ..barrier.barrier import Barrier
 from ..base.checks import check_runs, number
 from ..result.result import Result
 from ..scene.scene import Scene

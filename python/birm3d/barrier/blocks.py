@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .base import Barrier
+from .barrier_kind import BarrierKind
 from .description import SeenPart
 from .edges import cut_outline, rounded_outline
 
@@ -40,7 +40,7 @@ def positive(name: str, value: float) -> None:
 
 
 def along_line(
-    barrier: Barrier,
+    barrier: BarrierKind,
     corners: Floats,
     across: float,
     length: float,
@@ -82,7 +82,7 @@ def block_profile(depth: float, top: float) -> Floats:
 
 
 def rounded_block(
-    barrier: Barrier,
+    barrier: BarrierKind,
     depth: float,
     length: float,
     top: float,
@@ -149,7 +149,7 @@ def _plan_behind(depth: float, length: float, radius: float) -> Floats:
     return np.asarray(plan)
 
 
-def _upright(barrier: Barrier, plan: Floats, top: float, whole: int | None) -> _core.Element:
+def _upright(barrier: BarrierKind, plan: Floats, top: float, whole: int | None) -> _core.Element:
     """Return a part of an element, drawn upwards from its plan: places across and along, (n, 2) [m]."""
     return _core.Element.prism(
         profile=plan * (1.0, -1.0),  # own z points to lower y
@@ -170,7 +170,7 @@ def numbered(whole: str, part: str, count: int) -> tuple[str, ...]:
 
 
 def seen_block(
-    barrier: Barrier, angle: float, name: str, thickness: float, length: float, height: float
+    barrier: BarrierKind, angle: float, name: str, thickness: float, length: float, height: float
 ) -> SeenPart:
     """Return a block along the line as a path sees it that comes at an angle to the line [rad]."""
     width = thickness * abs(math.cos(angle)) + length * abs(math.sin(angle))

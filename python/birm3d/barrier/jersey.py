@@ -12,14 +12,14 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .base import Barrier, Surface
+from .barrier_kind import BarrierKind, Surface
 from .blocks import FOOT, along_line, numbered, positive, seen_block
 from .description import SeenPart, Size, height_text, length_text, segments_text
 from .free_standing import FreeStanding
 from .fronts import SlopedFront, axes_of, feet_of
 from .surfaces import ends, extruded
 
-__all__ = ["PROFILES", "Jersey"]
+__all__ = ["PROFILES", "JerseyKind"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -45,7 +45,7 @@ _TITLES = {
 
 
 @dataclass(frozen=True)
-class Jersey(Barrier):
+class JerseyKind(BarrierKind):
     """A concrete barrier with sloped faces, the same on both sides; its line is the traffic face's foot."""
 
     profile: str | tuple[tuple[float, float], ...] = "new_jersey"

@@ -5,12 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from .base import Barrier
-from .jersey import PROFILES, Jersey
-from .mesh import MeshBarrier
-from .planter import Planter
-from .posts import Bollards, Pole
-from .rigid_wall import RigidWall
+from .barrier import Barrier, Bollards, Jersey, MeshBarrier, Planter, Pole, RigidWall
+from .jersey import PROFILES
 
 __all__ = ["KINDS", "PROFILES", "Bollards", "Jersey", "MeshBarrier", "Planter", "Pole", "RigidWall"]
 

@@ -12,18 +12,18 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .base import Barrier, Surface
+from .barrier_kind import BarrierKind, Surface
 from .closed_mesh import check_closed
 from .description import SeenPart
 from .surfaces import placed
 
-__all__ = ["MeshBarrier"]
+__all__ = ["MeshKind"]
 
 Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class MeshBarrier(Barrier):
+class MeshKind(BarrierKind):
     """A barrier of triangles that close a solid; it may be open where it stands on the ground."""
 
     vertices: Floats = field(default_factory=lambda: np.empty((0, 3)))
@@ -99,7 +99,7 @@ class MeshBarrier(Barrier):
         return ("mesh",)
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, MeshBarrier):
+        if not isinstance(other, MeshKind):
             return NotImplemented
         return (
             (self.friction, self.origin, self.heading) == (other.friction, other.origin, other.heading)

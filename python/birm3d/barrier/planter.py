@@ -10,18 +10,18 @@ import numpy as np
 
 from .. import _core
 from ..base.checks import positive_and_finite
-from .base import Surface
+from .barrier_kind import Surface
 from .blocks import seen_block
 from .description import SeenPart, Size
 from .fronts import FlatFront, axes_of
 from .rounded_block import BlockPlan, RoundedBlock
 from .surfaces import ends, extruded
 
-__all__ = ["Planter"]
+__all__ = ["PlanterKind"]
 
 
 @dataclass(frozen=True)
-class Planter(RoundedBlock):
+class PlanterKind(RoundedBlock):
     """A rigid, fixed, solid block of given footprint and height; its line is the foot of its traffic face.
 
     Its edges are those of a :class:`~birm3d.barrier.rounded_block.RoundedBlock`.

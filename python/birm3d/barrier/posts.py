@@ -13,18 +13,18 @@ import numpy.typing as npt
 
 from .. import _core
 from ..base.checks import MOST_ELEMENTS, positive_and_finite
-from .base import Barrier, Surface
+from .barrier_kind import BarrierKind, Surface
 from .blocks import numbered, positive
 from .description import SeenPart, Size, height_text
 from .fronts import PostFront, axes_of
 from .surfaces import cylinder
 from .yielding import CONCRETE_STRENGTH, Foundation, Tube, Weaker, weaker_of
 
-__all__ = ["Bollards", "Pole"]
+__all__ = ["BollardsKind", "PoleKind"]
 
 
 @dataclass(frozen=True)
-class Pole(Barrier):
+class PoleKind(BarrierKind):
     """One rigid, upright cylinder, taller than any vehicle; the barrier's line runs through its axis."""
 
     diameter: float = 0.3
@@ -72,7 +72,7 @@ class Pole(Barrier):
 
 
 @dataclass(frozen=True)
-class Bollards(Barrier):
+class BollardsKind(BarrierKind):
     """Bollards in rows: rigid, or steel tubes that yield.
 
     A bollard draws in the skin beside it, see :meth:`birm3d.Vehicle.with_indentation_length`.
@@ -177,7 +177,7 @@ class Bollards(Barrier):
         """Return what gives way of posts that yield."""
         return None if self.weaker is None else self.weaker.posts
 
-    def turning_points(self) -> list[npt.NDArray[np.float64]]:
+    def rotation_centers(self) -> list[npt.NDArray[np.float64]]:
         """Return the centres of rotation of posts that yield."""
         if self.weaker is None:
             return []

@@ -12,14 +12,14 @@ import numpy.typing as npt
 
 from .. import _core
 from ..base.checks import positive_and_finite
-from .base import Surface
+from .barrier_kind import Surface
 from .blocks import numbered, positive, seen_block
 from .description import SeenPart, Size, height_text, length_text, segments_text
 from .fronts import FlatFront, axes_of, feet_of
 from .rounded_block import BlockPlan, RoundedBlock
 from .surfaces import ends, extruded
 
-__all__ = ["RigidWall"]
+__all__ = ["RigidWallKind"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -30,7 +30,7 @@ _DRAWN_DEPTH = 0.4
 
 
 @dataclass(frozen=True)
-class RigidWall(RoundedBlock):
+class RigidWallKind(RoundedBlock):
     """A flat, rigid, vertical wall.
 
     Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .base import Barrier, Surface
+from .barrier_kind import BarrierKind, Surface
 from .blocks import along_line, block_profile, rounded_block
 from .edges import check_edge_radius, edges_text, rounded_outline, segment_outlines, usual_edge_radius
 from .surfaces import drawn_up, placed
@@ -29,7 +29,7 @@ class BlockPlan(NamedTuple):
     names: tuple[str, str]
 
 
-class RoundedBlock(Barrier):
+class RoundedBlock(BarrierKind):
     """A solid block along the line. Its upright edges are sharp, or rounded by :attr:`rounding`.
 
     Sharp edges pass between nodes of the skin. Rounded edges on the traffic's side are posts: like bollards

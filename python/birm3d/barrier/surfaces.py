@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import numpy.typing as npt
 
-from .base import Barrier, Surface
+from .barrier_kind import BarrierKind, Surface
 
 __all__ = [
     "Surface",
@@ -29,7 +29,7 @@ _LEAST_HEIGHT = 1.0
 _POLE_SIDES = 48
 
 
-def barrier_axes(barrier: Barrier | None) -> Floats:
+def barrier_axes(barrier: BarrierKind | None) -> Floats:
     """Return unit vectors along the barrier's line, out of its traffic face and up, as rows, world axes.
 
     At heading 0 they are +y, -x and +z. Without a barrier the same.
@@ -39,7 +39,7 @@ def barrier_axes(barrier: Barrier | None) -> Floats:
     return np.stack([np.cross(out, up), out, up])
 
 
-def barrier_surfaces(barrier: Barrier | None, around: npt.ArrayLike) -> list[Surface]:
+def barrier_surfaces(barrier: BarrierKind | None, around: npt.ArrayLike) -> list[Surface]:
     """Return the closed surfaces of a barrier, one for each of its elements.
 
     Parameters
@@ -65,13 +65,15 @@ def ends(length: float, segments: int, seen: tuple[float, float]) -> Floats:
     return np.array(seen) if np.isinf(length) else np.linspace(-0.5, 0.5, segments + 1) * length
 
 
-def placed(barrier: Barrier, points: Floats) -> Floats:
+def placed(barrier: BarrierKind, points: Floats) -> Floats:
     """Return points (n, 3) in world axes from across, along and up of the barrier."""
     along, out, up = barrier_axes(barrier)
     return np.asarray(barrier.origin + points @ np.stack([-out, along, up]))
 
 
-def extruded(barrier: Barrier, front: Floats, back: Floats, height: Floats, ends: Floats) -> list[Surface]:
+def extruded(
+    barrier: BarrierKind, front: Floats, back: Floats, height: Floats, ends: Floats
+) -> list[Surface]:
     """Return closed segments between `ends`; at heights (n,), foot first, they reach from front to back."""
     # Round the section, up the back and down the front: counter-clockwise seen from the low end.
     across, up = np.concatenate([back, front[::-1]]), np.concatenate([height, height[::-1]])

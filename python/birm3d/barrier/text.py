@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from .base import Barrier
+from .barrier_kind import BarrierKind
 
 __all__ = ["barrier_text", "varied_barrier_text"]
 
 
-def barrier_text(barrier: Barrier | None) -> str:
+def barrier_text(barrier: BarrierKind | None) -> str:
     """Return kind, count and sizes of a barrier, as ``5 bollards, Ø 0.32 m, 1 m high, ...``."""
     return "no barrier" if barrier is None else barrier.text
 
@@ -18,7 +18,7 @@ _VARIED = {"free_standing": "its segments"}
 """Number of a barrier -> what is varied with it, where the name does not say it."""
 
 
-def varied_barrier_text(barrier: Barrier | None, parameters: Iterable[str]) -> str:
+def varied_barrier_text(barrier: BarrierKind | None, parameters: Iterable[str]) -> str:
     """Return :func:`barrier_text` of a study, which may vary the barrier or some of its numbers."""
     names = list(parameters)
     if "barrier" in names:

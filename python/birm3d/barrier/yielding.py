@@ -246,18 +246,25 @@ class Weaker:
 
 def weaker_of(tube: Tube, height: float, foundation: Foundation | None) -> Weaker:
     """Return what gives way under a load 0.6 m above the ground, or at the top of a lower post."""
-    lever = min(height, _LOAD_HEIGHT)
-    moment, depth, block, turns = tube.plastic_moment, 0.0, 0.0, False
-    if foundation is not None and foundation.moment / (lever + foundation.rotation_depth) < moment / lever:
+    moment, depth, block = tube.plastic_moment, 0.0, 0.0
+    switch = 0.0 if foundation is None else _switch_height(moment, foundation)
+    turns = min(height, _LOAD_HEIGHT) < switch
+    if foundation is not None and turns:
         moment, depth, block = foundation.moment, foundation.rotation_depth, foundation.mass
-        turns = True
-    # Tube and foundation give way under the same load where M_t / h = M_f / (h + d).
-    switch = 0.0
-    if foundation is not None:
-        stronger = foundation.moment - tube.plastic_moment
-        switch = foundation.rotation_depth * tube.plastic_moment / stronger if stronger > 0.0 else math.inf
     length = height + depth
     mass = tube.mass_per_length * length
     inertia = mass * (length**2 / 3.0 + tube.diameter**2 / 16.0) + block * depth**2 / 3.0
     posts = _core.YieldingPosts(mass=mass + block, inertia=inertia, plastic_moment=moment)
     return Weaker(posts, depth, turns, switch)
+
+
+def _switch_height(tube_moment: float, foundation: Foundation) -> float:
+    """Return the height of a load under which tube and foundation give way together [m].
+
+    That is where ``M_t / h = M_f / (h + d)``, with the depth ``d`` of the centre of rotation. A foundation
+    that is weaker at any height has no such place: infinity.
+    """
+    stronger, depth = foundation.moment - tube_moment, foundation.rotation_depth
+    if stronger > 0.0:
+        return depth * tube_moment / stronger
+    return math.inf if stronger < 0.0 or depth > 0.0 else 0.0  # alike: the tube

@@ -13,7 +13,7 @@ from ..barrier.kinds import KINDS
 from ..base.near_names import did_you_mean
 
 if TYPE_CHECKING:
-    from ..barrier.base import Barrier
+    from ..barrier.barrier import Barrier
     from ..simulation.simulation import Simulation
 
 __all__ = ["QuantityOption", "barrier_of", "scene_options", "simulation_of"]
@@ -203,7 +203,7 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
 
 def barrier_of(options: dict[str, Any]) -> Barrier | None:
     """Return the barrier of the options of :func:`scene_options`."""
-    from ..barrier.base import Barrier
+    from ..barrier.barrier import Barrier
 
     kind = options["barrier"]
     names_of = {name: [size.name for size in made.sizes] for name, made in KINDS.items()}

@@ -101,17 +101,17 @@ def _unit(writer: GltfWriter, root: int, time: int, name: str, shape: UnitShape,
 
 
 def _barrier(writer: GltfWriter, root: int, time: int, run: Instants) -> None:
-    """Add the elements of the barrier, each with its foot as the origin."""
+    """Add the elements of the barrier, each with the point that it turns about as the origin."""
     from scipy.spatial.transform import Rotation
 
     for element, (corners, faces) in enumerate(run.surfaces):
         moves = element < run.motion.movable
-        foot = run.motion.foot[element] if moves else np.zeros(3)
-        mesh = writer.mesh(f"barrier {element + 1}", corners - foot, faces, _BARRIER)
-        node = writer.node(f"barrier {element + 1}", parent=root, mesh=mesh, translation=foot)
+        center = run.motion.center[element] if moves else np.zeros(3)
+        mesh = writer.mesh(f"barrier {element + 1}", corners - center, faces, _BARRIER)
+        node = writer.node(f"barrier {element + 1}", parent=root, mesh=mesh, translation=center)
         if moves:
             turn = Rotation.from_matrix(run.motion.turn[:, element]).as_quat()
-            writer.animate(node, "translation", time, foot + run.motion.shift[:, element])
+            writer.animate(node, "translation", time, center + run.motion.shift[:, element])
             writer.animate(node, "rotation", time, _continuous(turn))
 
 

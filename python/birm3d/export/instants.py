@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..barrier.base import Surface
+from ..barrier.barrier_kind import Surface
 from ..barrier.surfaces import barrier_surfaces
 from ..result.element_motion import ElementMotion, element_motion
 from ..result.frames import frame_times

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import units
-from ..barrier.rigid_wall import RigidWall
+from ..barrier.kinds import RigidWall
 from ..barrier.text import barrier_text
 from ..io.atomic_write import whole_file
 from ..result.crush_profile import Side, crushed_sides, side_words
@@ -25,7 +25,7 @@ from .notebook import figure_html
 from .page_data import page_data
 
 if TYPE_CHECKING:
-    from ..barrier.base import Barrier
+    from ..barrier.barrier import Barrier
     from ..result.result import Result
     from ..scene.scene import Scene
 

@@ -215,12 +215,12 @@ function makeReplay(box, data) {
     gl.bufferSubData(gl.ARRAY_BUFFER, 0, unit.crush);
     unit.pose = poseOf(mixed(unit.rotation[i], unit.rotation[j], share), mixed(unit.center[i], unit.center[j], share));
   }
-  // Of an element of the barrier that moves: p -> turn (p - foot) + foot + shift. The turn is stored row by row.
+  // Of an element of the barrier that moves: p -> turn (p - center) + center + shift. The turn is stored row by row.
   function poseOfElement(part, [i, j, share]) {
-    if (!part.foot) return still;
+    if (!part.center) return still;
     const t = mixed(part.turn[i], part.turn[j], share), shift = mixed(part.shift[i], part.shift[j], share);
-    const at = part.foot.map((x, a) => x + shift[a] - t[3 * a] * part.foot[0] - t[3 * a + 1] * part.foot[1]
-      - t[3 * a + 2] * part.foot[2]);
+    const at = part.center.map((x, a) => x + shift[a] - t[3 * a] * part.center[0] - t[3 * a + 1] * part.center[1]
+      - t[3 * a + 2] * part.center[2]);
     return Float32Array.of(t[0], t[3], t[6], 0, t[1], t[4], t[7], 0, t[2], t[5], t[8], 0, ...at, 1);
   }
 

@@ -139,7 +139,7 @@ def _barrier(result: Result, times: Floats, world: Floats) -> list[dict[str, Any
             "faces": _text(faces.astype("<u4")),
         }
         if i < motion.movable:
-            part["foot"] = np.round(motion.foot[i], 4).tolist()
+            part["center"] = np.round(motion.center[i], 4).tolist()
             part["shift"] = np.round(motion.shift[:, i], 4).tolist()
             part["turn"] = np.round(motion.turn[:, i].reshape(-1, 9), 6).tolist()
         parts.append(part)

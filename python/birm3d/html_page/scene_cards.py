@@ -12,7 +12,7 @@ from ..vehicle.title import kind_words, vehicle_text
 from .notebook import card, table_html
 
 if TYPE_CHECKING:
-    from ..barrier.base import Barrier
+    from ..barrier.barrier import Barrier
     from ..scene.scene import Scene
     from ..vehicle.vehicle import Vehicle
 

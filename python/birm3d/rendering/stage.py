@@ -23,7 +23,7 @@ from .camera import Camera, View, check_view, driver_camera, outside_camera
 from .unit_on_stage import Color, UnitOnStage, polygons
 
 if TYPE_CHECKING:
-    from ..barrier.base import Barrier
+    from ..barrier.barrier import Barrier
     from ..result.result import Result
 
 __all__ = ["Color", "Stage"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..barrier.base import Barrier
+from ..barrier.barrier import Barrier
 from ..barrier.fronts import Front
 from ..barrier.kinds import KINDS
 

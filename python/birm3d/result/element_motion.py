@@ -20,29 +20,30 @@ class ElementMotion(NamedTuple):
 
     Attributes
     ----------
-    foot
-        Points about which the turns are, where they were at first, world axes, shape (e, 3) [m].
+    center
+        Points about which the turns are, where they were at first, world axes, shape (e, 3) [m]. That is a
+        segment's foot, and a post's centre of rotation.
     shift
         Of these points from there, shape (k, e, 3) [m].
     turn
         Rotations from how the elements stood at first, shape (k, e, 3, 3).
     """
 
-    foot: Floats
+    center: Floats
     shift: Floats
     turn: Floats
 
     @property
     def movable(self) -> int:
         """How many elements move."""
-        return len(self.foot)
+        return len(self.center)
 
     def moved(self, k: int, element: int, corners: Floats) -> Floats:
         """Return points of an element at an instant from where they were at first, shape (n, 3) [m]."""
         if element >= self.movable:
             return corners
-        foot = self.foot[element]
-        return np.asarray((corners - foot) @ self.turn[k, element].T + foot + self.shift[k, element])
+        center = self.center[element]
+        return np.asarray((corners - center) @ self.turn[k, element].T + center + self.shift[k, element])
 
 
 def element_motion(result: RunRecord, time: Floats) -> ElementMotion:
@@ -51,27 +52,27 @@ def element_motion(result: RunRecord, time: Floats) -> ElementMotion:
         return _of_posts(result, time)
     place = result.segment_position
     parts = range(place.shape[1])
-    foot = np.zeros((len(parts), 3))
-    foot[:, :2] = place[0]
+    center = np.zeros((len(parts), 3))
+    center[:, :2] = place[0]
     shift = np.zeros((len(time), len(parts), 3))
     turn = np.zeros((len(time), len(parts), 3, 3))
     turn[..., 2, 2] = 1.0
     for i in parts:
         for axis in (0, 1):
-            shift[:, i, axis] = np.interp(time, result.time, place[:, i, axis]) - foot[i, axis]
+            shift[:, i, axis] = np.interp(time, result.time, place[:, i, axis]) - center[i, axis]
         yaw = np.radians(np.interp(time, result.time, result.segment_yaw[:, i]))
         turn[:, i, 0, 0] = turn[:, i, 1, 1] = np.cos(yaw)
         turn[:, i, 1, 0] = np.sin(yaw)
         turn[:, i, 0, 1] = -turn[:, i, 1, 0]
-    return ElementMotion(foot, shift, turn)
+    return ElementMotion(center, shift, turn)
 
 
 def _of_posts(result: RunRecord, time: Floats) -> ElementMotion:
-    """Return how posts turn about their feet, and not about their own axes."""
+    """Return how posts turn about their centres of rotation, and not about their own axes."""
     barrier = result.scene.barrier
     assert barrier is not None  # it has posts
     parts = range(result.post_axis.shape[1])
-    foot = np.array(barrier.turning_points())
+    center = np.array(barrier.rotation_centers())
     turn = np.zeros((len(time), len(parts), 3, 3))
     for i in parts:
         axis = np.stack([np.interp(time, result.time, column) for column in result.post_axis[:, i].T], axis=1)
@@ -87,4 +88,4 @@ def _of_posts(result: RunRecord, time: Floats) -> ElementMotion:
             ],
             axis=1,
         )
-    return ElementMotion(foot, np.zeros((len(time), len(parts), 3)), turn)
+    return ElementMotion(center, np.zeros((len(time), len(parts), 3)), turn)

@@ -10,7 +10,7 @@ from .event import DECIDED
 from .metrics import METRIC_UNITS
 
 if TYPE_CHECKING:
-    from ..barrier.base import Barrier
+    from ..barrier.barrier import Barrier
     from .analysis import RunAnalysis
 
 __all__ = ["omitted_lines"]

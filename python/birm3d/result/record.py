@@ -204,7 +204,7 @@ class RunRecord:
 
     @cached_property
     def post_axis(self) -> Floats:
-        """Unit vectors from the foot to the top of each post that yields, world axes, shape (n, k, 3).
+        """Unit vectors along each post that yields, upwards, world axes, shape (n, k, 3).
 
         Posts are those of ``scene.barrier.element_names``; k is 0 where the barrier is rigid.
         """

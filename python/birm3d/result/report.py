@@ -16,7 +16,7 @@ from .low_barrier import low_barrier_lines
 from .omitted import omitted_lines
 
 if TYPE_CHECKING:
-    from ..barrier.base import Barrier
+    from ..barrier.barrier import Barrier
     from .analysis import RunAnalysis
 
 __all__ = ["END_REASONS", "report"]

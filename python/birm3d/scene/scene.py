@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from .. import _core
-from ..barrier.base import Barrier
+from ..barrier.barrier import Barrier
 from ..base.arguments import checked
 from ..vehicle.vehicle import Vehicle
 from .settings import CORNERING_STIFFNESS, EDGE_FLANK_FACTOR, MU_TIRE_BARRIER, Settings

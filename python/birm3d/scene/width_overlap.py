@@ -10,7 +10,7 @@ import numpy as np
 from ..barrier.surfaces import barrier_axes, barrier_surfaces
 
 if TYPE_CHECKING:
-    from ..barrier.base import Barrier
+    from ..barrier.barrier import Barrier
     from ..vehicle.vehicle import Vehicle
 
 __all__ = ["SIDES", "offset_of_overlap"]

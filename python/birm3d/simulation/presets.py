@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
-from ..barrier.base import Barrier
+from ..barrier.barrier import Barrier
 from ..base.arguments import checked
 from ..scene.settings import Settings
 from ..signals.reference import NhtsaTest, nhtsa_tests

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, get_type_hints
 from pydantic import Field, ValidationInfo, create_model, field_validator, model_validator
 
 from .. import units
-from ..barrier.base import Barrier
+from ..barrier.barrier import Barrier
 from ..barrier.free_standing import FreeStanding
 from ..barrier.kinds import KINDS
 from ..barrier.yielding import Foundation

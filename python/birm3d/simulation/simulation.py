@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from .. import _core, pictures
 from .._version import __version__
-from ..barrier.base import Barrier
+from ..barrier.barrier import Barrier
 from ..base.arguments import checked
 from ..base.progress import run_bar
 from ..result.result import Result

@@ -9,14 +9,14 @@ import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ..barrier.base import Barrier
+from ..barrier.barrier import Barrier
 from ..barrier.kinds import PROFILES, Bollards, Jersey
 from ..base.arguments import checked
 from ..result.low_barrier import LowBarrierWarning
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
 from ..vehicle.front_height import middle_of_front
-from .limit_search import CONTAINED, Limit, Question, search_limit
+from .limit_search import CONTAINED, Effort, Limit, Question, search_limit
 
 __all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass", "least_tube_thickness"]
 
@@ -117,16 +117,8 @@ def greatest_gap(
     )
     limits = [si("gaps", gap, "length") for gap in gaps]
     _check_width(simulation, row, limits)
-    return search_limit(
-        simulation,
-        question,
-        limits,
-        points=points,
-        resolution=_resolution(resolution, "length"),
-        draws=draws,
-        executor=executor,
-        progress=progress,
-    )
+    effort = Effort(points, resolution, draws, executor, progress)
+    return search_limit(simulation, question, limits, effort)
 
 
 @checked
@@ -191,18 +183,11 @@ def least_height(
         caution=_OVER.format(middle="the bumper beam" if middle is None else _MIDDLE.format(middle)),
         outcomes=("stopped", "redirected"),  # who rolls over leans across the top
     )
+    limits = _usual_heights(barrier) if heights is None else heights
+    effort = Effort(points, resolution, draws, executor, progress)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LowBarrierWarning)  # low heights are tried on purpose
-        return search_limit(
-            simulation,
-            question,
-            _usual_heights(barrier) if heights is None else [si("heights", h, "length") for h in heights],
-            points=points,
-            resolution=_resolution(resolution, "length"),
-            draws=draws,
-            executor=executor,
-            progress=progress,
-        )
+        return search_limit(simulation, question, limits, effort)
 
 
 @checked
@@ -264,16 +249,8 @@ def least_segment_mass(
         # Between pinned segments nothing passes: who is past the barrier and not over it has slid to its end.
         outcomes=(*CONTAINED, "passed") if barrier.is_pinned else CONTAINED,
     )
-    return search_limit(
-        simulation,
-        question,
-        [si("masses", mass, "mass") for mass in masses],
-        points=points,
-        resolution=_resolution(resolution, "mass"),
-        draws=draws,
-        executor=executor,
-        progress=progress,
-    )
+    effort = Effort(points, resolution, draws, executor, progress)
+    return search_limit(simulation, question, masses, effort)
 
 
 @checked
@@ -332,16 +309,8 @@ def least_tube_thickness(
         most=_at_most("deflection", deflection),
         caution=_YIELDS,
     )
-    return search_limit(
-        simulation,
-        question,
-        [si("thicknesses", thickness, "length") for thickness in thicknesses],
-        points=points,
-        resolution=_resolution(resolution, "length"),
-        draws=draws,
-        executor=executor,
-        progress=progress,
-    )
+    effort = Effort(points, resolution, draws, executor, progress)
+    return search_limit(simulation, question, thicknesses, effort)
 
 
 def _barrier(simulation: Simulation) -> Barrier:
@@ -413,7 +382,3 @@ def _at_most(name: str, value: Quantity | None) -> float | None:
     if not found >= 0.0:
         raise ValueError(f"{name} must be >= 0 m, got {found}")
     return found
-
-
-def _resolution(value: Quantity | None, quantity: str) -> float | None:
-    return None if value is None else si("resolution", value, quantity)

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .. import pictures
-from ..base.checks import number
 from ..base.frozen_mapping import FrozenMapping
 from ..result.event import outcome_words
 from ..simulation.simulation import Simulation
+from ..units import Quantity, si
 from .distributions import check_count
 from .limit_class import class_shares, drawn_vehicles
 from .runner import StudyInterrupted, run_study
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-__all__ = ["CONTAINED", "Limit", "NotInRangeError", "Question", "SearchRun", "search_limit"]
+__all__ = ["CONTAINED", "Effort", "Limit", "NotInRangeError", "Question", "SearchRun", "search_limit"]
 
 CONTAINED = ("stopped", "redirected", "rolled_over")
 """Outcomes of a vehicle that did not get past the barrier."""
@@ -62,7 +62,7 @@ class Question(NamedTuple):
 
     name: str  # as "clear gap"
     argument: str  # that has the range, as "gaps"
-    unit: str
+    unit: str  # "m" or "kg"
     greatest: bool  # whether the greatest value is sought that holds, or the least
     parameter: str  # of the scene, as "barrier.spacing"
     of_value: Callable[[float], Any]  # value of the parameter
@@ -71,6 +71,11 @@ class Question(NamedTuple):
     most: float | None  # of the metric
     caution: str  # what the model leaves out that bears on the answer
     outcomes: tuple[str, ...] = CONTAINED  # that hold
+
+    @property
+    def quantity(self) -> str:
+        """What is searched, for texts with a unit."""
+        return {"m": "length", "kg": "mass"}[self.unit]
 
     @property
     def criterion(self) -> str:
@@ -85,6 +90,16 @@ class Question(NamedTuple):
         """Whether a run with this outcome and measure did what it should."""
         within = self.most is None or measure <= self.most  # a NaN is not
         return within and outcome in self.outcomes
+
+
+class Effort(NamedTuple):
+    """How closely a search looks, and where its runs are made; :func:`birm3d.greatest_gap` explains each."""
+
+    points: int
+    resolution: Quantity | None
+    draws: int | None
+    executor: Any
+    progress: bool | None
 
 
 class NotInRangeError(ValueError):
@@ -288,15 +303,7 @@ class Limit:
 
 
 def search_limit(
-    simulation: Simulation,
-    question: Question,
-    limits: Sequence[float],
-    *,
-    points: int,
-    resolution: float | None,
-    draws: int | None,
-    executor: Any,
-    progress: bool | None,
+    simulation: Simulation, question: Question, limits: Sequence[Quantity], effort: Effort
 ) -> Limit:
     """Scan a range, then bisect between the last value that holds and the first that does not.
 
@@ -310,11 +317,13 @@ def search_limit(
         With the finished runs.
     """
     low, high = _range(question, limits)
-    check_count("points", points, least=2)
-    resolution = (high - low) / 100.0 if resolution is None else number("resolution", resolution)
+    check_count("points", effort.points, least=2)
+    resolution = (high - low) / 100.0
+    if effort.resolution is not None:
+        resolution = si("resolution", effort.resolution, question.quantity)
     if not 0.0 < resolution < math.inf:
         raise ValueError(f"resolution must be finite and > 0 {question.unit}, got {resolution}")
-    vehicles = drawn_vehicles(simulation, draws)
+    vehicles = drawn_vehicles(simulation, effort.draws)
     studies: list[Study] = []
     runs: list[SearchRun] = []
 
@@ -327,8 +336,8 @@ def search_limit(
                 (question.parameter, "impact_offset"),
                 [(question.of_value(value), offset) for value, offset in rows],
                 metrics=[question.measure],
-                executor=executor,
-                progress=progress if len(values) > 1 else False,
+                executor=effort.executor,
+                progress=effort.progress if len(values) > 1 else False,
                 title=question.name,
             )
         except StudyInterrupted as stopped:
@@ -339,7 +348,7 @@ def search_limit(
         held = _held(new)
         return [held[value] for value in values]
 
-    grid = np.linspace(low, high, points).tolist()
+    grid = np.linspace(low, high, effort.points).tolist()
     order = grid if question.greatest else grid[::-1]
     flags = dict(zip(grid, tried(grid), strict=True))
     first = next((i for i, value in enumerate(order) if not flags[value]), None)
@@ -354,7 +363,7 @@ def search_limit(
             value = middle
         else:
             fails_at = middle
-    shares = _shares(simulation, question, vehicles, value, order, executor)
+    shares = _shares(simulation, question, vehicles, value, order, effort.executor)
     all_runs, joined = tuple(sorted(runs)), Study.joined(studies)
     draws = len(next(iter(vehicles.values()), ()))
     return Limit(question, value, fails_at, resolution, all_runs, joined, shares, draws)
@@ -429,7 +438,8 @@ def _not_in_range(
     )
 
 
-def _range(question: Question, limits: Sequence[float]) -> tuple[float, float]:
+def _range(question: Question, given: Sequence[Quantity]) -> tuple[float, float]:
+    limits = [si(question.argument, value, question.quantity) for value in given]
     if len(limits) != 2 or not 0.0 < limits[0] < limits[1] < math.inf:
         shown = tuple(limits)
         raise ValueError(

@@ -36,7 +36,7 @@ Scene at_posts(int count, const YieldingPosts& yielding, double speed, double to
 }  // namespace
 
 TEST("a post that spins comes to rest after I w^2 / 2M") {
-    const Segment post = tilting_post(Post(radius, height), tube);
+    const MovingElement post = tilting_post(Post(radius, height), tube);
     const double spin = 30.0;  // rad/s
     const double angle = tube.inertia * spin * spin / (2.0 * tube.plastic_moment);
     for (const double dt : {1e-4, 1e-5}) {
@@ -59,7 +59,7 @@ TEST("a post that spins comes to rest after I w^2 / 2M") {
 
 TEST(
     "a moment below the plastic one does not move a post, and one that lies on the ground turns no further") {
-    const Segment post = tilting_post(Post(radius, height), tube);
+    const MovingElement post = tilting_post(Post(radius, height), tube);
     const double dt = 1e-3;
     const Vec3 below(0.0, 0.999 * dt * tube.plastic_moment, 0.0), above = 2.0 * below;
     BodyState body;
@@ -99,9 +99,9 @@ TEST("energies balance, a post does not spring back, and its work is moment time
         while (run.state().time < 0.4) {
             run.step();
             const State& now = run.state();
-            CHECK(tilt_of(now.segments[0]) >= tilt);
+            CHECK(tilt_of(now.moving_elements[0]) >= tilt);
             CHECK(now.energies.yielding >= yielding);
-            tilt = tilt_of(now.segments[0]);
+            tilt = tilt_of(now.moving_elements[0]);
             yielding = now.energies.yielding;
         }
         CHECK(tilt > 0.1);
@@ -132,7 +132,7 @@ TEST("posts whose moment nothing exceeds are rigid posts, where the core meets n
     laboratory::run(yields);
     laboratory::run(rigid);
     const State &one = yields.state(), &other = rigid.state();
-    CHECK(one.segments[1].orientation.coeffs() == Quat::Identity().coeffs());
+    CHECK(one.moving_elements[1].orientation.coeffs() == Quat::Identity().coeffs());
     CHECK_CLOSE(one.energies.crushed, other.energies.crushed, 1e-4 * other.energies.crushed, "other steps");
     CHECK_CLOSE(one.units[0].body.velocity.x(), other.units[0].body.velocity.x(), 8e-4, "other steps");
 }

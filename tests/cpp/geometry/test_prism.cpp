@@ -10,8 +10,6 @@ using namespace birm3d;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 void check_nearest(const Prism& prism, const Vec3& p, double gap, const Vec3& normal) {
     const Nearest n = prism.nearest(p);
     CHECK_CLOSE(n.gap, gap, 1e-14, "rounding");

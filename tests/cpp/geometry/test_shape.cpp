@@ -8,8 +8,6 @@ using namespace birm3d;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 const std::vector<Eigen::Vector2d> wall = {{0.0, 0.0}, {0.4, 0.0}, {0.4, 0.8}, {0.0, 0.8}};
 
 std::vector<Shape> shapes() {

@@ -8,8 +8,6 @@ using namespace birm3d;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 const Prism::Profile jersey_half = {{0.3048, 0.0}, {0.3048, 0.0762}, {0.127, 0.3302}, {0.0762, 0.8128}};
 const Prism::Profile notched = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.5, 0.4}, {0.0, 1.0}};
 

@@ -112,7 +112,8 @@ TEST("what is held stays at rest whatever friction adds") {
     Vec6 row;
     row << Vec3::UnitZ(), Vec3(0.8, -1.2, 0.0).cross(Vec3::UnitZ());
     const double stiff = 1e6 * body.mass;
-    const Twist before{Vec3(0.0, 0.02, 0.01), Vec3(0.01, 0.0, -0.02)}, motion{Vec3(0.0, 0.01, -0.03), {}};
+    const Twist before{Vec3(0.0, 0.02, 0.01), Vec3(0.01, 0.0, -0.02)},
+        motion{Vec3(0.0, 0.01, -0.03), Vec3::Zero()};
     const FrictionLoad f = pressed.friction(0.4, 0.2, before);
     const Twist end = settled(motion, before, f.resistance, 1e-2, inertia, stiff * row * row.transpose());
     const double speed = row.head<3>().dot(end.velocity) + row.tail<3>().dot(end.angular_velocity);

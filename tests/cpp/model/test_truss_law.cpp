@@ -1,6 +1,5 @@
 #include "birm3d/model/truss_law.hpp"
 
-#include <limits>
 #include <stdexcept>
 
 #include "check.hpp"
@@ -10,7 +9,6 @@ using namespace birm3d;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // 100 N/m to 0.2 m, 300 N/m to 50 N (0.3 m), plateau; unloading 1000 N/m.
 const TrussCurve curve = knee_curve(100.0, 0.2, 300.0, 50.0, 1000.0);
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <limits>
 #include <vector>
 
 namespace birm3d {
@@ -15,6 +16,9 @@ using Quat = Eigen::Quaterniond;
 
 // A column holds one number for every node, truss or row.
 using Column = std::vector<double>;
+
+// A length, a force or a time without limit.
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Force and torque about the mass centre; frame stated where it is used (N, N m).
 struct Wrench {

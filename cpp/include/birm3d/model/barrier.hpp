@@ -7,15 +7,15 @@
 
 #include "birm3d/base/types.hpp"
 #include "birm3d/geometry/shape.hpp"
-#include "birm3d/model/segment.hpp"
+#include "birm3d/model/moving_element.hpp"
 
 namespace birm3d {
 
 // A wall or a segment of it, a post, a mesh: loads are reported element by element.
 struct Element {
     Shape shape;  // own axes: z up, unless upright
-    Vec3 position =
-        Vec3::Zero();      // of the own axes' origin, the element's foot: from the barrier's origin (m)
+    // Of the own axes' origin, from the barrier's origin: the foot, or a post's centre of rotation (m).
+    Vec3 position = Vec3::Zero();
     double heading = 0.0;  // turn of the own axes about z (rad)
     bool upright = false;  // own y points up and own z to lower y: a prism drawn upwards from its plan
     // Index of an element before it that this one is a part of, as a wall's rounded edge: loads are that one's. None: it is
@@ -49,7 +49,8 @@ struct Barrier {
     double heading;   // rad
     std::optional<FreeStanding> free_standing;
     std::optional<YieldingPosts> yielding;
-    std::vector<Segment> segments;  // (elements) where they are free-standing or yield; else none
+    // (elements) where they are free-standing or yield; else none.
+    std::vector<MovingElement> moving_elements;
 };
 
 }  // namespace birm3d

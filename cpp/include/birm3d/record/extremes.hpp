@@ -15,7 +15,7 @@ struct ExtremeGroups {
     bool normal_force = true, motion = true, attitude = true, energy = true;
     bool filtered_force = true, filtered_deceleration = true;
     bool penetration = true, wheel_climb = true, element_loads = true, momentum = true, joint = true,
-         segments = true;
+         moving_elements = true;
 
     // The columns of the history that the wanted groups need.
     Channels channels() const {
@@ -28,9 +28,9 @@ struct ExtremeGroups {
                 .forces = false,
                 .momentum = momentum,
                 .contact_forces = false,
-                .elements = element_loads || segments,
+                .elements = element_loads || moving_elements,
                 .joints = joint,
-                .segments = segments};
+                .moving_elements = moving_elements};
     }
 };
 
@@ -74,7 +74,7 @@ struct Extremes {
         double moment = 0.0, moment_50ms = 0.0;  // N m
     };
     // Motion and loads of the segments of a free-standing barrier, or of posts that yield.
-    struct Segments {
+    struct MovingElements {
         // Distances by which the furthest corner of any base moved square to the line, away from the traffic (m): the
         // greatest, and that at the end. Of posts that yield: those of the middle of the top.
         double deflection = 0.0, residual_deflection = 0.0;
@@ -104,7 +104,7 @@ struct Extremes {
     std::optional<ElementLoads> element_loads;
     std::optional<double> momentum_residual;  // the History::momentum_residual of the run
     std::optional<JointLoads> joint;          // the loads of the first joint
-    std::optional<Segments> segments;
+    std::optional<MovingElements> moving_elements;
 };
 
 // `history` has all its columns, or those of wanted.channels(). Groups of a barrier or of a joint that is not there are
@@ -119,6 +119,6 @@ Extremes::JointLoads greatest_joint_loads(const History& history);
 double greatest_penetration(const History& history, const Vehicle& vehicle, const Barrier& barrier);
 double greatest_wheel_climb(const History& history, const Vehicle& vehicle);
 Extremes::ElementLoads greatest_element_loads(const History& history, const Barrier& barrier);
-Extremes::Segments greatest_movement(const History& history, const Barrier& barrier);
+Extremes::MovingElements greatest_movement(const History& history, const Barrier& barrier);
 
 }  // namespace birm3d

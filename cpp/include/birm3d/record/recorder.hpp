@@ -41,11 +41,11 @@ struct ObstacleHistory {
 };
 
 // A free-standing segment of the barrier, or a post that yields.
-struct SegmentHistory {
+struct MovingElementHistory {
     std::vector<Vec3> position;  // foot of its axis, world (m)
     std::vector<Vec3> velocity;  // mass centre, world (m/s)
     Column yaw, yaw_rate;        // from the start, about the vertical (rad, rad/s)
-    std::vector<Vec3> axis;      // of a post that yields: unit vector from its foot to its top, world
+    std::vector<Vec3> axis;      // of a post that yields: unit vector along it, upwards, world
 };
 
 struct JointHistory {
@@ -62,8 +62,9 @@ struct History {
     std::vector<UnitHistory> units;
     std::vector<ObstacleHistory> obstacles;  // of the elements that were touched
     std::vector<JointHistory> joints;
-    std::vector<SegmentHistory> segments;        // of a barrier that moves, in the order of its elements
-    Column kinetic, potential, stored, crushed;  // J
+    // Of a barrier that moves, in the order of its elements.
+    std::vector<MovingElementHistory> moving_elements;
+    Column kinetic, potential, stored, crushed;                                    // J
     Column barrier_friction, tire_friction, ground_friction, impacts, joint_work;  // J
     Column segment_friction, suspension, sliding, yielding;                        // J
     double kinetic_at_start = 0.0;                                                 // at the first instant (J)
@@ -84,7 +85,7 @@ struct Channels {
     bool contact_forces = true;    // UnitHistory::sum_of_contact_forces
     bool elements = true;          // loads on the elements of the barrier
     bool joints = true;            // only with the motion
-    bool segments = true;
+    bool moving_elements = true;
 };
 
 struct OutputInstants;
@@ -110,7 +111,7 @@ class Recorder {
     struct Loads {
         const std::vector<UnitState>& units;
         const std::vector<BodyState>* bodies;  // of the units, beside an impact; null: as these have them
-        const std::vector<BodyState>& segments;
+        const std::vector<BodyState>& moving_elements;
         const std::vector<ContactImpulses>& impulses;
         const std::vector<Wrench>& joint_impulses;
         bool curved;  // do the forces of the step that leads to this row follow a parabola?
@@ -128,7 +129,7 @@ class Recorder {
     void resample_units(const OutputInstants& output, const Scene& scene, const Channels& wanted,
                         History& history) const;
     void resample_obstacles(const Scene& scene, const OutputInstants& output, History& history) const;
-    void resample_segments(const Scene& scene, const OutputInstants& output, History& history) const;
+    void resample_moving_elements(const Scene& scene, const OutputInstants& output, History& history) const;
     void resample_joints(const Scene& scene, const OutputInstants& output, History& history) const;
 
     std::size_t width_;  // numbers in a row

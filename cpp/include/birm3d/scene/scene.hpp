@@ -60,10 +60,10 @@ struct Scene {
     std::vector<char> skin_meets_ground;  // (units) those that stand on wheels, where there is ground
 
     // How many of the obstacles, from the first, can move: all of the barrier's or none.
-    std::size_t free_segments() const { return barrier ? barrier->segments.size() : 0; }
+    std::size_t moving_count() const { return barrier ? barrier->moving_elements.size() : 0; }
     // Do they slide on the ground?
     bool slides() const { return barrier && barrier->free_standing; }
-    // Do they tilt about their feet?
+    // Do they tilt about their centres of rotation?
     bool tilts() const { return barrier && barrier->yielding; }
 
     State initial_state() const;

@@ -125,14 +125,15 @@ struct State : Progress {
         static_cast<Progress&>(*this) = {};
         for (std::size_t u = 0; u < units.size(); ++u)
             units[u].reset(vehicle.units[u]);
-        segments.clear();
+        moving_elements.clear();
         balances = {};
     }
 
     std::vector<UnitState> units;
-    std::vector<BodyState> segments;  // of the barrier, where they are free-standing or yield; else none
-    std::vector<char> was_near;       // (elements of the barrier) in any step? Statistics only
-    Balances balances;                // the same
+    // Of the barrier, where they are free-standing or yield; else none.
+    std::vector<BodyState> moving_elements;
+    std::vector<char> was_near;  // (elements of the barrier) in any step? Statistics only
+    Balances balances;           // the same
 
     std::uint64_t hash() const {
         Hash hash;
@@ -151,8 +152,8 @@ struct State : Progress {
             for (const IndentedPanels& indented : unit.indented)
                 hash.add(Vec3(static_cast<double>(indented.obstacle), indented.panels, indented.passed));
         }
-        for (const BodyState& segment : segments)
-            add_body(segment);
+        for (const BodyState& element : moving_elements)
+            add_body(element);
         hash.add(energies.total());
         return hash.value();
     }

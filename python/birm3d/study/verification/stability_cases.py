@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from ...barrier.base import Barrier
+from ...barrier.barrier import Barrier
 from ...scene.settings import Settings
 from ...simulation.parameters import varied
 from ...simulation.simulation import Simulation

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...barrier.base import Barrier
-from ...barrier.mesh import MeshBarrier
+from ...barrier.barrier import Barrier
+from ...barrier.kinds import MeshBarrier
 from ...barrier.surfaces import barrier_axes, barrier_surfaces
 
 __all__ = ["triangulated"]

@@ -25,22 +25,22 @@ Ground2 along(double angle) {
 }
 
 // Of the four corners of the base along `past`, which is level (m).
-std::array<double, 4> corners(const Segment& segment, const SegmentHistory& motion, double heading,
-                              const Vec3& past, std::size_t row) {
+std::array<double, 4> corners(const MovingElement& element, const MovingElementHistory& motion,
+                              double heading, const Vec3& past, std::size_t row) {
     const double angle = heading + motion.yaw[row];
     const Ground2 past_plane{past.x(), past.y()};
     const double foot = motion.position[row].x() * past.x() + motion.position[row].y() * past.y();
-    const double x = segment.half_base * across(angle).dot(past_plane);
-    const double y = segment.half_length * along(angle).dot(past_plane);
+    const double x = element.half_base * across(angle).dot(past_plane);
+    const double y = element.half_length * along(angle).dot(past_plane);
     return {foot - x - y, foot + x - y, foot + x + y, foot - x + y};
 }
 
-// Greatest overturning of a segment, per its mass and half its base (m/s^2); see Extremes::Segments.
-double overturning(const Segment& segment, const SegmentHistory& motion, const ObstacleHistory* load,
-                   double heading, double interval) {
+// Greatest overturning of a segment, per its mass and half its base (m/s^2); see Extremes::MovingElements.
+double overturning(const MovingElement& element, const MovingElementHistory& motion,
+                   const ObstacleHistory* load, double heading, double interval) {
     const std::size_t window = rows_in(window_50ms, interval);
     const double rows = static_cast<double>(window);
-    const double mass = segment.body.mass, half = segment.half_base;
+    const double mass = element.body.mass, half = element.half_base;
     double greatest = 0.0;
     // Sums of the rows within the window. WindowSum rounds them in another order, which would change the last digits of a
     // metric whose values are committed.
@@ -54,18 +54,18 @@ double overturning(const Segment& segment, const SegmentHistory& motion, const O
         const double angle = heading + motion.yaw[k];
         const Ground2 acceleration{change.x() / (interval * rows), change.y() / (interval * rows)};
         const double moment_along = Ground2{moment.x() / rows, moment.y() / rows}.dot(along(angle)) -
-                                    mass * segment.mass_center_height * acceleration.dot(across(angle));
+                                    mass * element.mass_center_height * acceleration.dot(across(angle));
         greatest = std::max(greatest, (std::abs(moment_along) + force.z() / rows * half) / (mass * half));
     }
     return greatest;
 }
 
-Extremes::Segments greatest_tilt(const History& history, const Barrier& barrier) {
-    Extremes::Segments found;
+Extremes::MovingElements greatest_tilt(const History& history, const Barrier& barrier) {
+    Extremes::MovingElements found;
     const Vec3 past = -barrier.normal();
-    for (std::size_t i = 0; i < history.segments.size(); ++i) {
-        const std::vector<Vec3>& axis = history.segments[i].axis;
-        const double height = barrier.segments[i].reach;
+    for (std::size_t i = 0; i < history.moving_elements.size(); ++i) {
+        const std::vector<Vec3>& axis = history.moving_elements[i].axis;
+        const double height = barrier.moving_elements[i].reach;
         double tilt = 0.0, moved = 0.0;
         for (const Vec3& now : axis) {
             tilt = tilt_of(now);
@@ -81,17 +81,17 @@ Extremes::Segments greatest_tilt(const History& history, const Barrier& barrier)
 
 }  // namespace
 
-Extremes::Segments greatest_movement(const History& history, const Barrier& barrier) {
+Extremes::MovingElements greatest_movement(const History& history, const Barrier& barrier) {
     if (barrier.yielding) return greatest_tilt(history, barrier);
-    Extremes::Segments found;
+    Extremes::MovingElements found;
     const Vec3 past = -barrier.normal();
     const std::size_t count = history.time.size();
-    for (std::size_t i = 0; i < history.segments.size(); ++i) {
-        const Segment& segment = barrier.segments[i];
-        const SegmentHistory& motion = history.segments[i];
-        const std::array<double, 4> start = corners(segment, motion, barrier.heading, past, 0);
+    for (std::size_t i = 0; i < history.moving_elements.size(); ++i) {
+        const MovingElement& element = barrier.moving_elements[i];
+        const MovingElementHistory& motion = history.moving_elements[i];
+        const std::array<double, 4> start = corners(element, motion, barrier.heading, past, 0);
         for (std::size_t k = 0; k < count; ++k) {
-            const std::array<double, 4> now = corners(segment, motion, barrier.heading, past, k);
+            const std::array<double, 4> now = corners(element, motion, barrier.heading, past, k);
             double moved = 0.0;
             for (std::size_t c = 0; c < now.size(); ++c)
                 moved = std::max(moved, now[c] - start[c]);
@@ -103,7 +103,7 @@ Extremes::Segments greatest_movement(const History& history, const Barrier& barr
                                        [i](const ObstacleHistory& known) { return known.obstacle == i; });
         found.overturning =
             std::max(found.overturning,
-                     overturning(segment, motion, load == history.obstacles.end() ? nullptr : &*load,
+                     overturning(element, motion, load == history.obstacles.end() ? nullptr : &*load,
                                  barrier.heading, history.time[1] - history.time[0]));
     }
     return found;

@@ -1,11 +1,11 @@
-// Elements of a barrier that move: free-standing segments slide on the ground, posts that yield tilt about their foot.
-// That is the centre of rotation: at the ground, or below it where the foundation turns.
+// Elements of a barrier that move: free-standing segments slide on the ground, posts that yield tilt about
+// their centre of rotation. That is the foot, at the ground, or a point below it where the foundation turns.
 //
 // A free-standing segment moves along the ground and turns about the vertical; it neither tips nor leaves the ground.
 // Its mass properties follow from the solid: section area times length times density, of what stands above z = 0.
 //
-// A post that yields turns about its foot, but not about its own axis. The moment that resists is constant and acts
-// against the turning (rigid, perfectly plastic hinge): the post stands still until the load's moment exceeds it.
+// A post that yields turns about its centre of rotation, but not about its own axis. The moment that resists is constant
+// and acts against the turning (rigid, perfectly plastic hinge): the post stands still until the load's moment exceeds it.
 #pragma once
 
 #include <array>
@@ -31,13 +31,13 @@ struct FreeStanding {
 // Posts that yield, all alike.
 struct YieldingPosts {
     double mass;            // kg
-    double inertia;         // about a horizontal axis through the foot (kg m^2)
-    double plastic_moment;  // of the tube, or that the foundation resists, about the foot (N m)
+    double inertia;         // about a horizontal axis through the centre of rotation (kg m^2)
+    double plastic_moment;  // of the tube, or that the foundation resists, about the centre of rotation (N m)
 };
 
-// An element that moves. A post that yields has its foot where a segment has its mass centre: the body's inertia is about the
-// foot, and its inverse mass is zero, because the foot stays where it is.
-struct Segment {
+// An element that moves. A post that yields has its centre of rotation where a segment has its mass centre: the
+// body's inertia is about it, and the inverse mass is zero, because it stays where it is.
+struct MovingElement {
     RigidBody body;             // own axes of the element, origin at the mass centre
     double mass_center_height;  // above the ground (m)
     double reach;        // of a moving point from the axis through the mass centre; of a post its height (m)
@@ -54,10 +54,10 @@ struct Segment {
 
 // Refuses a density that is not > 0, and a prism without ends or top or with nothing above z = 0. The mass centre
 // must stand above the origin of the prism, within 1e-9 m.
-Segment segment_of(const Prism& prism, double density);
+MovingElement segment_of(const Prism& prism, double density);
 
-// Refuses posts without end, and numbers that are not > 0. `depth`: of the foot below the ground (m). A post lies on the ground
-// at a tilt of 1.4 rad. One that turns about a deeper point does so where its top has come down to the ground.
-Segment tilting_post(const Post& post, const YieldingPosts& posts, double depth = 0.0);
+// Refuses posts without end, and numbers that are not > 0. `depth`: of the centre of rotation below the ground (m). A post lies
+// on the ground at a tilt of 1.4 rad. One that turns about a deeper point does so where its top has come down to the ground.
+MovingElement tilting_post(const Post& post, const YieldingPosts& posts, double depth = 0.0);
 
 }  // namespace birm3d

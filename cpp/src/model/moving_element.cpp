@@ -1,4 +1,4 @@
-#include "birm3d/model/segment.hpp"
+#include "birm3d/model/moving_element.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,7 @@ void add_edge(const PrismEdge& edge, Section& sum) {
 
 }  // namespace
 
-Segment segment_of(const Prism& prism, double density) {
+MovingElement segment_of(const Prism& prism, double density) {
     require_positive("density", density);
     const double length = prism.y_high() - prism.y_low();
     if (!std::isfinite(length)) refuse("length of a free-standing segment", "finite", length);
@@ -83,7 +83,7 @@ Segment segment_of(const Prism& prism, double density) {
         {Vec3(-base, -y, -z), Vec3(base, -y, -z), Vec3(-base, y, -z), Vec3(base, y, -z)}};
 }
 
-Segment tilting_post(const Post& post, const YieldingPosts& posts, double depth) {
+MovingElement tilting_post(const Post& post, const YieldingPosts& posts, double depth) {
     require_positive("mass of a post that yields", posts.mass);
     require_positive("inertia of a post that yields", posts.inertia);
     require_positive("plastic_moment of a post that yields", posts.plastic_moment);

@@ -1,33 +1,63 @@
-"""The functions by which users make barriers: ``Barrier.rigid_wall()``, ``Barrier.pole()``, ..."""
+"""Barriers: what a vehicle runs into. ``Barrier.rigid_wall()``, ``Barrier.pole()``, ... make them."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
+from .. import _core, pictures
 from ..base.arguments import checked
 from ..unit_check import USUAL, given, warn_if_mesh_unusual, warn_if_unusual
 from ..units import Quantity, si
+from .barrier_kind import BarrierKind, Point, point_of
 from .free_standing import FreeStanding
+from .jersey import JerseyKind
+from .mesh import MeshKind
+from .planter import PlanterKind
+from .posts import BollardsKind, PoleKind
+from .rigid_wall import RigidWallKind
 from .yielding import Foundation
 
-if TYPE_CHECKING:
-    from .kinds import Bollards, Jersey, MeshBarrier, Planter, Pole, RigidWall
-
-__all__ = ["BarrierMakers", "Point", "point_of"]
-
-Point = tuple[float, float, float]
+__all__ = ["Barrier", "Bollards", "Jersey", "MeshBarrier", "Planter", "Pole", "RigidWall"]
 
 # Longer than 300 lines: what users read of all kinds of barriers, side by side.
 
 
 @checked
-class BarrierMakers:
-    """One static method for each kind of :class:`birm3d.Barrier`."""
+class Barrier(BarrierKind):
+    """A barrier that stands on the ground; immutable. Make one with :meth:`rigid_wall`, :meth:`bollards`, ...
+
+    Its line runs along +y at heading 0 and its traffic face looks to -x; the vehicle comes from there. It has
+    one or more elements (a post, a segment of a wall): loads are reported element by element, see
+    :attr:`birm3d.Result.element_loads`.
+
+    Parameters
+    ----------
+    friction
+        Coulomb coefficient between vehicle and barrier; 0.15 to 0.20 for steel on concrete (paper 5.4).
+        Tyres have one of their own, :attr:`birm3d.Settings.mu_tire_barrier`; at 0 they slide without
+        friction too, unless the settings give them a number.
+    origin
+        The middle of the barrier on its line, at the foot of its traffic face, of posts of their axes; world
+        axes, shape (3,) [m]. Moved along its line the barrier is met at another place: the vehicle keeps its
+        path, see ``impact_offset`` of :class:`birm3d.Simulation` and :meth:`station`.
+    heading
+        Turn of the barrier's line about the vertical [deg].
+    """
+
+    _of_text: ClassVar[str] = "Barrier.bollards() and others like it return one"
+
+    def elements(self) -> list[_core.Element]:
+        """Refuse: only kinds of barriers have elements."""
+        makers = [name for name, made in vars(Barrier).items() if isinstance(made, staticmethod)]
+        raise TypeError(f"a Barrier is made with {', '.join(makers[:-1])} or {makers[-1]}")
+
+    def _repr_html_(self) -> str:
+        return pictures.barrier_html(self)
 
     @staticmethod
     def rigid_wall(
@@ -66,8 +96,6 @@ class BarrierMakers:
         ValueError
             If a number is out of range; the message names argument, limit and value.
         """
-        from .kinds import RigidWall
-
         radius = None if edge_radius is None else given("edge_radius", edge_radius)
         rounded = radius is not None and radius > 0.0
         return RigidWall(
@@ -101,8 +129,6 @@ class BarrierMakers:
         ValueError
             If a number is out of range; the message names argument, limit and value.
         """
-        from .kinds import Pole
-
         return Pole(
             *_common(friction, origin, heading),
             diameter=given("diameter", diameter),
@@ -163,8 +189,6 @@ class BarrierMakers:
         ValueError
             If a number is out of range; the message names argument, limit and value.
         """
-        from .kinds import Bollards
-
         return Bollards(
             *_common(friction, origin, heading),
             count=count,
@@ -220,8 +244,6 @@ class BarrierMakers:
         ValueError
             If a number is out of range; the message names argument, limit and value.
         """
-        from .kinds import Jersey
-
         if isinstance(free_standing, FreeStanding):
             if density is not None:
                 raise ValueError(
@@ -280,8 +302,6 @@ class BarrierMakers:
         ValueError
             If a number is out of range; the message names argument, limit and value.
         """
-        from .kinds import Planter
-
         return Planter(
             *_common(friction, origin, heading),
             length=given("length", length),
@@ -317,8 +337,6 @@ class BarrierMakers:
             If shapes or indices are wrong, the triangles have a hole, or the solid is inside out;
             the message names the culprit.
         """
-        from .kinds import MeshBarrier
-
         points = np.array(vertices, float)
         if points.ndim == 2 and points.shape[0] > 0 and points.shape[1] == 3:
             warn_if_mesh_unusual(float(np.ptp(points[:, 2])))
@@ -327,6 +345,34 @@ class BarrierMakers:
             vertices=points,
             faces=np.array(faces),
         )
+
+
+# Makers return these classes, and each of them is a Barrier. So they stand in one module with it: else two
+# modules would import each other. What a kind is stands in the class that it derives from first.
+
+
+class RigidWall(RigidWallKind, Barrier):
+    """See :class:`~birm3d.barrier.rigid_wall.RigidWallKind`."""
+
+
+class Pole(PoleKind, Barrier):
+    """See :class:`~birm3d.barrier.posts.PoleKind`."""
+
+
+class Bollards(BollardsKind, Barrier):
+    """See :class:`~birm3d.barrier.posts.BollardsKind`."""
+
+
+class Jersey(JerseyKind, Barrier):
+    """See :class:`~birm3d.barrier.jersey.JerseyKind`."""
+
+
+class Planter(PlanterKind, Barrier):
+    """See :class:`~birm3d.barrier.planter.PlanterKind`."""
+
+
+class MeshBarrier(MeshKind, Barrier):
+    """See :class:`~birm3d.barrier.mesh.MeshKind`."""
 
 
 def _filling(filling: str | float | None) -> str | float | None:
@@ -342,11 +388,3 @@ def _filling(filling: str | float | None) -> str | float | None:
 def _common(friction: float, origin: Sequence[Quantity], heading: Quantity) -> tuple[float, Point, float]:
     """Return the numbers that every kind of barrier has, SI and degrees."""
     return float(friction), point_of(origin), given("heading", heading)
-
-
-def point_of(origin: Sequence[Quantity]) -> Point:
-    """Return a place in world axes [m], given as numbers or text with a unit."""
-    if np.shape(origin) != (3,):
-        raise ValueError(f"origin must have shape (3,), got {np.shape(origin)}")
-    x, y, z = (si("origin", value, "length") for value in origin)
-    return x, y, z

@@ -1,4 +1,4 @@
-"""Barriers: what a vehicle runs into."""
+"""What every kind of barrier has: its place, its friction, and how it describes itself."""
 
 from __future__ import annotations
 
@@ -11,16 +11,18 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .. import _core, pictures
+from .. import _core
 from ..base.arguments import check_fields, checked
 from ..base.checks import MOST_ELEMENTS, whole_number
 from ..unit_check import USUAL, given
 from ..units import Quantity, si
 from .description import SeenPart, Size
 from .fronts import Front
-from .makers import BarrierMakers, Point, point_of
 
-__all__ = ["Barrier", "Surface"]
+__all__ = ["BarrierKind", "Point", "Surface", "point_of"]
+
+Point: TypeAlias = "tuple[float, float, float]"
+"""World axes [m]."""
 
 Surface: TypeAlias = "tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]"
 """Vertices (n, 3), world axes [m], and triangles (m, 3), counter-clockwise seen from outside."""
@@ -30,26 +32,8 @@ _ENDLESS = 1e6  # m: barriers without end are taken as so high
 
 @checked
 @dataclass(frozen=True)
-class Barrier(BarrierMakers):
-    """A barrier that stands on the ground; immutable. Make one with :meth:`rigid_wall`, :meth:`bollards`, ...
-
-    Its line runs along +y at heading 0 and its traffic face looks to -x; the vehicle comes from there. It has
-    one or more elements (a post, a segment of a wall): loads are reported element by element, see
-    :attr:`birm3d.Result.element_loads`.
-
-    Parameters
-    ----------
-    friction
-        Coulomb coefficient between vehicle and barrier; 0.15 to 0.20 for steel on concrete (paper 5.4).
-        Tyres have one of their own, :attr:`birm3d.Settings.mu_tire_barrier`; at 0 they slide without
-        friction too, unless the settings give them a number.
-    origin
-        The middle of the barrier on its line, at the foot of its traffic face, of posts of their axes; world
-        axes, shape (3,) [m]. Moved along its line the barrier is met at another place: the vehicle keeps its
-        path, see ``impact_offset`` of :class:`birm3d.Simulation` and :meth:`station`.
-    heading
-        Turn of the barrier's line about the vertical [deg].
-    """
+class BarrierKind:
+    """What a kind of barrier derives from; :class:`birm3d.Barrier` explains the fields and makes barriers."""
 
     friction: float = 0.2
     origin: Point = (0.0, 0.0, 0.0)
@@ -57,7 +41,6 @@ class Barrier(BarrierMakers):
 
     _counts: ClassVar[tuple[str, ...]] = ()  # fields that are whole numbers
 
-    _of_text: ClassVar[str] = "Barrier.bollards() and others like it return one"
     title: ClassVar[str] = "barrier"
     """What help texts call this kind."""
     sizes: ClassVar[tuple[Size, ...]] = ()
@@ -82,12 +65,11 @@ class Barrier(BarrierMakers):
             raise ValueError(f"heading must be finite, got {self.heading}")
         _ = self.core
 
-    # ---- making barriers ----------------------------------------------------------------------------------
+    # ---- what the core needs ------------------------------------------------------------------------------
 
     def elements(self) -> list[_core.Element]:
         """Return the elements for the core; a kind of barrier says which."""
-        makers = [name for name, kind in vars(BarrierMakers).items() if isinstance(kind, staticmethod)]
-        raise TypeError(f"a Barrier is made with {', '.join(makers[:-1])} or {makers[-1]}")
+        raise NotImplementedError
 
     @property
     def draws_in_skin(self) -> bool:
@@ -138,7 +120,7 @@ class Barrier(BarrierMakers):
         """Return how its posts yield, for the core; ``None`` where they are rigid."""
         return None
 
-    def turning_points(self) -> list[npt.NDArray[np.float64]]:
+    def rotation_centers(self) -> list[npt.NDArray[np.float64]]:
         """Return the points about which its posts turn if they yield, world axes, each (3,) [m]."""
         return []
 
@@ -209,8 +191,13 @@ class Barrier(BarrierMakers):
         angle = math.radians(self.heading)
         return float(place[1] * math.cos(angle) - place[0] * math.sin(angle))
 
-    def _repr_html_(self) -> str:
-        return pictures.barrier_html(self)
-
     def __getstate__(self) -> dict[str, object]:
         return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+def point_of(origin: Sequence[Quantity]) -> Point:
+    """Return a place in world axes [m], given as numbers or text with a unit."""
+    if np.shape(origin) != (3,):
+        raise ValueError(f"origin must have shape (3,), got {np.shape(origin)}")
+    x, y, z = (si("origin", value, "length") for value in origin)
+    return x, y, z
