@@ -197,6 +197,14 @@ def test_loose_segments_that_are_not_hit_stay(car: Vehicle) -> None:
     assert "joints" not in result.energy
 
 
+def test_loose_segments_in_the_skin_of_a_fast_pickup_keep_the_energy() -> None:
+    """Their ends plough through it. Steps that saw only smooth loads opened the balance by 0.14 %."""
+    barrier = Barrier.jersey(length=15.0, segments=5, free_standing=FreeStanding(joint="loose"))
+    settings = Settings(output_interval=1e-3)
+    scene = Simulation(Vehicle.preset("pickup"), barrier, 100.0 / 3.6, 25.0, duration=0.5, settings=settings)
+    assert scene.run().metrics["energy_residual"] < 1e-3, "measured: 0.0007"
+
+
 def test_momentum_of_all_changes_by_the_ground_only(car: Vehicle) -> None:
     free = FreeStanding(ground_friction=0.0)
     barrier = Barrier.jersey(length=30.0, segments=10, free_standing=free)

@@ -126,6 +126,18 @@ def load_map(columns: int, rows: int, width: float, loaded: slice) -> LoadMap:
     )
 
 
+@pytest.mark.parametrize("angle", [90.0, 25.0])
+def test_plans_at_long_barriers_show_the_vehicle_and_what_is_about_it(angle: float) -> None:
+    """Head-on at a barrier of 200 m the car was a fortieth of the picture."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    crash = Simulation(car, Barrier.jersey(length=200.0), 15.0, angle).run()
+    (axes,) = crash.plot_plan(exit_box=False).axes
+    sizes = np.ptp([axes.get_xlim(), axes.get_ylim()], axis=1)
+    assert sizes.max() < 2.2 * (car.length + np.ptp(crash.position[:, :2], axis=0).max())
+    posts = Simulation(car, Barrier.bollards(), 15.0).run().plot_plan().axes[0]
+    assert np.ptp(posts.get_ylim()) > 4 * 1.2 + 0.32, "m; posts are seen whole"
+
+
 def test_long_load_maps_are_cropped_to_what_is_loaded() -> None:
     figure = load_map(200, 4, 100.0, slice(20, 30)).plot()
     for axes in figure.axes[:2]:

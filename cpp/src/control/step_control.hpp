@@ -16,6 +16,8 @@ struct StepSearch {
     bool lands = false;     // is the landing on the barrier known?
     double pressing =
         std::numeric_limits<double>::infinity();  // first step that can be taken when contact begins (s)
+    double opening =
+        std::numeric_limits<double>::infinity();  // of the energy balance in the step tried last (J)
     double cut = 0.0;  // length that an impact cut off the step (s); the next step is not shortened for it
 };
 

@@ -42,19 +42,34 @@ bool is_straight(const Scene& scene, bool rounded) {
     return true;
 }
 
-// Will the vehicle still be fast enough after braking, and be beside the barrier, when the longest run ends?
-bool goes_on_sliding(const Scene& scene, const State& state, const Event& event) {
-    const double along = state.units.front().body.velocity.dot(line_direction(event)),
-                 speed = std::abs(along);
-    if (!(along * scene.heading().dot(line_direction(event)) > 0.0)) return false;
-    const double left = std::max(tolerance::longest_event, scene.duration.value_or(0.0)) - state.time;
+double speed_along(const State& state, const Event& event) {
+    return std::abs(state.units.front().body.velocity.dot(line_direction(event)));
+}
+
+bool is_stopped(const Scene& scene, double speed) {
+    return !(speed > tolerance::stopped_share * scene.approach.speed);
+}
+
+double time_left(const Scene& scene, const State& state) {
+    return std::max(tolerance::longest_event, scene.duration.value_or(0.0)) - state.time;
+}
+
+// Will friction have stopped the vehicle when the longest run ends?
+bool will_be_stopped(const Scene& scene, const State& state, const Event& event) {
+    const double speed = speed_along(state, event);
     const double braking = (event.slides_from_speed - speed) / (state.time - event.slides_since);
-    const double at_end = speed - std::max(0.0, braking) * left;
-    if (!(at_end > tolerance::stopped_share * scene.approach.speed)) return false;
+    return is_stopped(scene, speed - std::max(0.0, braking) * time_left(scene, state));
+}
+
+// Will the vehicle still move on as it came, beside the barrier, when the longest run ends?
+bool goes_on_sliding(const Scene& scene, const State& state, const Event& event) {
+    const double along = state.units.front().body.velocity.dot(line_direction(event));
+    if (!(along * scene.heading().dot(line_direction(event)) > 0.0)) return false;
+    if (will_be_stopped(scene, state, event)) return false;
     double reach = 0.0;
     for (const Unit& unit : scene.vehicle->units)
         reach = std::max(reach, unit.trusses.reach);
-    return distance_to_end(scene, state, event) > speed * left + reach;
+    return distance_to_end(scene, state, event) > std::abs(along) * time_left(scene, state) + reach;
 }
 
 }  // namespace
@@ -65,15 +80,18 @@ void note_sliding(const Scene& scene, const State& state, Event& event) {
         event.slides_since = std::numeric_limits<double>::infinity();
     } else if (!(event.slides_since < state.time)) {
         event.slides_since = state.time;
-        event.slides_from_speed = std::abs(state.units.front().body.velocity.dot(line_direction(event)));
+        event.slides_from_speed = speed_along(state, event);
     }
 }
 
 bool slides_on(const Scene& scene, const State& state, const Event& event) {
     if (!(event.slides_since <= state.time) || !(distance_past_line(scene, state, event) < 0.0)) return false;
-    if (other_energy(scene, state, event) + state.energies.stored < rest_energy(scene))
-        return is_straight(scene, false);
+    if (is_stopped(scene, speed_along(state, event))) return false;
     const bool settled = state.time - event.slides_since >= tolerance::rest_duration;
+    if (other_energy(scene, state, event) + state.energies.stored < rest_energy(scene)) {
+        const bool brakes = scene.settings.braking > 0.0;
+        return is_straight(scene, false) && (!brakes || (settled && !will_be_stopped(scene, state, event)));
+    }
     return settled && event.touching && is_straight(scene, true) && goes_on_sliding(scene, state, event);
 }
 

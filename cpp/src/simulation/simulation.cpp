@@ -107,6 +107,8 @@ EndReason Simulation::end_reason() const {
     if (scene_.duration) return EndReason::duration;
     if (!state_.decided) return EndReason::longest;
     if (event_.manner == Manner::slides_on) return EndReason::sliding;
+    if (!event_.left)
+        return EndReason::stopped;  // pressed skin may still move its mass centre away, and touch
     // A vehicle that left may turn so fast in the tail that `has_left` no longer holds: it is not at rest.
     const bool stopped = !has_left(scene_, state_) && rests(scene_, state_, event_);
     return stopped ? EndReason::stopped : EndReason::separated;

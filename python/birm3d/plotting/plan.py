@@ -59,9 +59,9 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
 
     Seen from above, in m from the barrier's origin. An oblique impact has the barrier's line level and its
     traffic side above; in one above 45 degrees the vehicle comes from the left. Endless walls are drawn as
-    wide as the scene; the depth of a wall is only drawn. Free-standing segments are drawn where they ended,
-    dashed where they stood. The outline of a vehicle of two units is drawn around both, with a thin line
-    where one hides the other.
+    wide as the scene, and of a long barrier the part about the vehicle; the depth of a wall is only drawn.
+    Free-standing segments are drawn where they ended, dashed where they stood. The outline of a vehicle of
+    two units is drawn around both, with a thin line where one hides the other.
 
     Parameters
     ----------
@@ -97,14 +97,22 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
     around = np.vstack([skin.world for units in skins for skin in units])
     if exit_box and _redirected(result):
         drawn.append(_exit_box(axes, result, view.plan))
+    places = np.vstack(drawn)
     draw_barrier(axes, view, around, drawn, result)
     axes.set_xlabel(view.labels[0])
-    fit_to(figure, axes, np.vstack(drawn), _WIDTH, _HEIGHTS, room=_TEXTS)
+    fit_to(figure, axes, _cropped(np.vstack(drawn), places), _WIDTH, _HEIGHTS, room=_TEXTS)
     flat = figure.get_figheight() - _TEXTS < _FLAT
     axes.set_ylabel(view.labels[1].replace("front of the", "front of\nthe") if flat else view.labels[1])
     figure.suptitle(f"{title(result, figure)}\n{_outcome(result)}", fontsize="medium")
     figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize="small", borderaxespad=0.0)
     return figure
+
+
+def _cropped(points: Floats, places: Floats) -> Floats:
+    """Return points of the picture, so that a long barrier does not make the places of the vehicle small."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    beyond = 0.5 * float((high - low).max())
+    return np.clip(points, low - beyond, high + beyond)
 
 
 def _spread(times: Floats) -> list[Instant]:

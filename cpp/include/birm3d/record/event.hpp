@@ -49,7 +49,7 @@ struct Event {
     double released_at = 0.0;               // time at which it last lost contact with the barrier (s)
     Vec3 released_velocity = Vec3::Zero();  // velocity of unit 0's mass centre at that time, world axes (m/s)
 
-    // Time since which the kinetic energy of all that moves has been below that of a vehicle at rest (s).
+    // Time since which the kinetic energy of all that moves has been below that of a slow vehicle (s).
     double slow_since = std::numeric_limits<double>::infinity();
 
     // Time since which the vehicle has slid along the barrier with no other motion (s), and its speed then (m/s).
