@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from ..base.complaints import Complaint
-from ..vehicle.front_height import middle_of_front
+from ..vehicle.front_height import strong_height
 
 if TYPE_CHECKING:
     from .. import _core
@@ -23,23 +23,23 @@ _HEAD_ON = 45.0  # deg from the normal of the barrier, up to which a front is me
 
 
 class LowBarrierWarning(UserWarning):
-    """A vehicle is computed to be stopped head-on by a barrier lower than the middle of its front.
+    """A vehicle is computed to be stopped head-on by a barrier that is lower than most of its front.
 
-    The middle is the height below which half of the front resists, see
-    :func:`birm3d.vehicle.front_height.middle_of_front`. The computed front is held as a whole by what its
+    More than a third of what the front resists with stands above the barrier, see
+    :func:`birm3d.vehicle.front_height.strong_height`. The computed front is held as a whole by what its
     lower part meets. A real one is bent down, or rides up and over.
     """
 
 
 def low_barrier(scene: Scene, event: _core.Event) -> Iterator[Complaint]:
-    """Yield a complaint if a barrier below the middle of the front contains a vehicle that comes head-on."""
+    """Yield a complaint if such a barrier contains a vehicle that comes head-on."""
     if event.outcome not in _CONTAINED or event.manner == "rests_untouched":
         return
     found = _heights(scene)
     if found is not None:
-        middle, top = found
-        text = partial(_text, scene.vehicle.title, middle, top)
-        yield Complaint(LowBarrierWarning, "height", middle - top, text)
+        height, top = found
+        text = partial(_text, scene.vehicle.title, height, top)
+        yield Complaint(LowBarrierWarning, "height", height - top, text)
 
 
 def low_barrier_lines(result: RunAnalysis) -> Iterator[str]:
@@ -47,31 +47,31 @@ def low_barrier_lines(result: RunAnalysis) -> Iterator[str]:
     found = _heights(result.scene) if result.outcome in _CONTAINED else None
     if found is None:
         return
-    middle, top = found
+    height, top = found
     yield (
-        f"The barrier ends {top:.2f} m above the ground. Half of what the front resists with stands above "
-        f"{middle:.2f} m. The computed front is held by its lower part; a real one may ride over. Do not "
+        f"The barrier ends {top:.2f} m above the ground. A third of what the front resists with stands above "
+        f"{height:.2f} m. The computed front is held by its lower part; a real one may ride over. Do not "
         "rely on the outcome."
     )
 
 
-def _text(title: str, middle: float, top: float) -> str:
+def _text(title: str, height: float, top: float) -> str:
     return (
-        f"height must be at least {middle:.2f} m, where half of what the front resists with ends ({title}), "
+        f"height must be at least {height:.2f} m, below which two thirds of the front resist ({title}), "
         f"to rely on the outcome, got {top:.2f} m: the computed front is held by its lower part, a real one "
         "may ride over"
     )
 
 
 def _heights(scene: Scene) -> tuple[float, float] | None:
-    """Return the middle of the front and the barrier's top [m] if the front comes first and is higher."""
+    """Return the height of most of a front that comes first, and of a barrier that is lower [m]."""
     if scene.barrier is None or not _front_first(scene):
         return None
-    middle = middle_of_front(scene.vehicle.units[0])
-    if middle is None:
+    height = strong_height(scene.vehicle.units[0])
+    if height is None:
         return None
     top = scene.barrier._top
-    return (middle, top) if top < middle - _SAME else None
+    return (height, top) if top < height - _SAME else None
 
 
 def _front_first(scene: Scene) -> bool:

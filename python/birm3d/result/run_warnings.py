@@ -50,7 +50,7 @@ def warn_of_run(
     MissedBarrierWarning
         As a warning, if the vehicle went past the end of the barrier and never touched it.
     LowBarrierWarning
-        As a warning, if a barrier that contains a front is lower than the front's middle.
+        As a warning, if a barrier that contains a front is lower than most of it.
     """
     for complaint in complaints_of_run(scene, statistics, balances, event):
         complaint.warn()

@@ -173,7 +173,7 @@ class Simulation:
         MissedBarrierWarning
             As a warning, if the vehicle went past the end of the barrier and never touched it.
         LowBarrierWarning
-            As a warning, if a barrier that contains a front is lower than the front's middle.
+            As a warning, if a barrier that contains a front is lower than most of it.
         ValueError
             If the frames are more than the result's rows or outside the run, or if the run takes more steps
             than a record holds; :meth:`result` has those that were taken.

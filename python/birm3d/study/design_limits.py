@@ -15,7 +15,7 @@ from ..base.arguments import checked
 from ..result.low_barrier import LowBarrierWarning
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
-from ..vehicle.front_height import middle_of_front
+from ..vehicle.front_height import strong_height
 from .limit_search import CONTAINED, Effort, Limit, Question, search_limit
 
 __all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass", "least_tube_thickness"]
@@ -32,11 +32,11 @@ _SKIN = (
 )
 _OVER = (
     "Computed, not tested. Here a barrier that catches the lower edge of the front holds the vehicle, though "
-    "a real front rides up on it: do not go below {middle}. The springs of the vehicle "
+    "a real front rides up on it: do not go below {}. The springs of the vehicle "
     "are estimates, and the barrier does not give way under it: leave a margin. Guidance for security "
     "bollards asks for 0.5 m or more."
 )
-_MIDDLE = "{:.2f} m, above which half of the front resists"
+_STRONG = "{:.2f} m, above which a third of the front resists"
 _SLIDES = (
     "Computed, not tested. Segments slide but do not tip, and their joints do not break: look at "
     "max_overturning_ratio too."
@@ -169,7 +169,7 @@ def least_height(
         )
     if isinstance(barrier, Jersey) and not isinstance(barrier.profile, str):
         raise ValueError("simulation must have a barrier of a named profile, got one of points")
-    middle = middle_of_front(simulation.scene.vehicle.units[0])
+    height = strong_height(simulation.scene.vehicle.units[0])
     question = Question(
         name="height",
         argument="heights",
@@ -180,7 +180,7 @@ def least_height(
         offsets=_usual_offsets(simulation, barrier, offsets),
         measure="vehicle_penetration",
         most=_at_most("penetration", penetration),
-        caution=_OVER.format(middle="the bumper beam" if middle is None else _MIDDLE.format(middle)),
+        caution=_OVER.format("the bumper beam" if height is None else _STRONG.format(height)),
         outcomes=("stopped", "redirected"),  # who rolls over leans across the top
     )
     limits = _usual_heights(barrier) if heights is None else heights

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from .. import _core
 from .along_panel import build_along
-from .front_height import middle_of_shape
+from .front_height import strong_height_of_shape
 from .mesher import build_mesh
 from .tire_nodes import build_tread, zones_of_wheels
 from .vehicle_file import VehicleFile
@@ -70,7 +70,7 @@ class VehicleShape:
             array.setflags(write=False)
         self._trusses: OrderedDict[tuple[object, ...], _core.TrussMesh] = OrderedDict()
         self._seen: OrderedDict[bytes, tuple[Floats, Floats]] = OrderedDict()
-        self._middles: OrderedDict[tuple[object, ...], float | None] = OrderedDict()
+        self._heights: OrderedDict[tuple[object, ...], float | None] = OrderedDict()
 
     @cached_property
     def without_tire_nodes(self) -> VehicleShape:
@@ -136,13 +136,13 @@ class VehicleShape:
             _forget_first(self._trusses, _LAWS)
         return known
 
-    def middle_of_front(self, zones: Mapping[str, Zone]) -> float | None:
-        """Return :func:`birm3d.vehicle.front_height.middle_of_shape`; the last few are remembered."""
+    def strong_height(self, zones: Mapping[str, Zone]) -> float | None:
+        """Return :func:`birm3d.vehicle.front_height.strong_height_of_shape`; the last few are remembered."""
         key = tuple(zones.items())
-        if key not in self._middles:
-            self._middles[key] = middle_of_shape(self, zones)
-            _forget_first(self._middles, _LAWS)
-        return self._middles[key]
+        if key not in self._heights:
+            self._heights[key] = strong_height_of_shape(self, zones)
+            _forget_first(self._heights, _LAWS)
+        return self._heights[key]
 
     def __reduce__(self) -> tuple[object, ...]:
         arrays = (self.nodes, self.anchors, self.area, self.zone_of_node, self.wheel_of_node)
