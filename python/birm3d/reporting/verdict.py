@@ -203,7 +203,7 @@ def _chances(case: Case, standard: str) -> str:
         return ""
     rated = case.bands.ratings[standard]
     shares = ", ".join(f"{name} {share:.0%}" for name, share in rated.probability.items())
-    return f". Of {len(rated.ratings)} vehicles of the class: {shares}"
+    return f". Of {rated.runs} vehicles of the class: {shares}"
 
 
 def _load_band(case: Case) -> str:
