@@ -33,7 +33,12 @@ if TYPE_CHECKING:
 __all__ = ["rate_roadside"]
 
 _STILL = 0.5  # m/s into the barrier, of a vehicle that slides along it
-_MOST_ROLL = 75.0  # deg; MASH criterion F
+_MOST_ROLL = 75.0  # deg; MASH criterion F, also of pitch
+_MOST_AT_END = 45.0  # deg; a vehicle that is left further over lies on the barrier, or is about to fall
+_UPRIGHT = (
+    f"not rolled over; roll and pitch within {_MOST_ROLL:g} deg, roll at the end within {_MOST_AT_END:g} deg"
+)
+_NO_ANGLE = "; EN 1317 gives no angle: the first is MASH's for light vehicles, the second chosen"
 _SLACK = 1e-9  # rounding of the units
 _LEAST_SEVERITY = 0.92  # of the nominal impact severity, MASH
 _TIPS = (
@@ -219,9 +224,20 @@ def _containment(result: Result, name: str) -> Criterion:
 
 
 def _upright(result: Result) -> tuple[str, bool]:
-    """Return what became of the vehicle in words, and whether it stayed upright, wherever it went."""
-    rolled = has_rolled_over(result)
-    return "rolled over" if rolled else outcome_words(result.outcome), not rolled
+    """Return what became of the vehicle in words, and whether it stayed upright, wherever it went.
+
+    A run ends at separation or later, so that the roll at its end is the last that is known.
+    """
+    if has_rolled_over(result):
+        return "rolled over", False
+    became, within = outcome_words(result.outcome), max(_attitude(result)) <= _MOST_ROLL
+    upright = within and _roll_at_end(result) <= _MOST_AT_END
+    return became if upright else f"{became}, not upright", upright
+
+
+def _roll_at_end(result: Result) -> float:
+    """Return the greatest roll of all units when the run ends [deg]."""
+    return max(abs(float(result.unit(i).roll[-1])) for i in range(len(result.scene.vehicle.units)))
 
 
 def _attitude(result: Result) -> tuple[float, float]:
@@ -282,7 +298,7 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
     ]
     if light:
         rows += [
-            Criterion("F: upright", became, "", "not rolled over", upright),
+            Criterion("F: upright", became, "", _UPRIGHT, upright),
             Criterion("F: greatest roll", roll, "deg", f"{_MOST_ROLL:g} deg", roll <= _MOST_ROLL),
             Criterion("F: greatest pitch", pitch, "deg", f"{_MOST_ROLL:g} deg", pitch <= _MOST_ROLL),
             graded("H: OIV, longitudinal", risk.oiv_x, "m/s", limits.velocity),
@@ -302,6 +318,7 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
             ),
             Criterion(_roll_name(result), roll, "deg", "", None),
         ]
+    rows.append(Criterion("roll at the end", _roll_at_end(result), "deg", "", None))
     # MASH measures to the furthest part of the barrier or of the vehicle, EN 1317 to that of the barrier.
     width = max(_working_width(result), intrusion)
     rows += [
@@ -322,8 +339,9 @@ def _european(result: Result, test: RoadsideTest, light: bool, intrusion: float)
     contained = _containment(result, "containment")
     rows: list[Criterion] = [
         contained,
-        Criterion("upright", became, "", "not rolled over", upright),
+        Criterion("upright", became, "", _UPRIGHT + _NO_ANGLE, upright),
         Criterion(_roll_name(result), roll, "deg", "", None),
+        Criterion("roll at the end", _roll_at_end(result), "deg", "", None),
         _box_row(exit_box(result, not light), judged=True, contained=contained.passed is True),
     ]
     classes = []
@@ -400,8 +418,9 @@ def _outcome_of(part: Rating) -> str:
     """Return what became of a test, and which criteria it failed."""
     failed = [f"{row.name} ({row.shown})" for row in part.criteria if row.passed is False]
     verdict = part.designation.partition(": ")[2]
-    if any(row.name == "G: upright" and row.grade == "no" for row in part.criteria):
-        verdict += ", rolled over"
+    for row in part.criteria:
+        if row.name == "G: upright" and row.grade == "no":
+            verdict += ", rolled over" if row.value == "rolled over" else ", not upright"
     return f"{verdict} by {', '.join(failed)}" if failed and verdict.startswith("fail") else verdict
 
 
