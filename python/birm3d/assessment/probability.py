@@ -87,6 +87,11 @@ class RatingStudy:
         return wilson(share, self.runs)
 
     @property
+    def caution(self) -> str:
+        """Of the run with the most to say, as one in which a segment would tip."""
+        return max((rating.caution for rating in self.ratings), key=len)
+
+    @property
     def test(self) -> str:
         """What the first run is rated as, as ``"3-11"``; "" of a security barrier."""
         return self.ratings[0].test
@@ -127,7 +132,7 @@ class RatingStudy:
     def summary(self) -> str:
         """Return the probabilities with their sampling errors, each criterion's band, and the caution."""
         tables = [criteria_text(self._rows()), "", self._of_rated, table_text(BAND_HEAD, self.rows)]
-        return "\n".join([self._title, *tables, f"Caution: {self.ratings[0].caution}"])
+        return "\n".join([self._title, *tables, f"Caution: {self.caution}"])
 
     __str__ = summary
 
@@ -140,12 +145,12 @@ class RatingStudy:
             "penetration": self.penetration.tolist(),
             "criteria": [dict(zip(BAND_HEAD, row, strict=True)) for row in self.rows],
             "failed": {str(run): reason for run, reason in self.failed.items()},
-            "caution": self.ratings[0].caution,
+            "caution": self.caution,
         }
 
     def _repr_html_(self) -> str:
         bands = table_html(self._of_rated, BAND_HEAD, self.rows)
-        return criteria_html(self._title, self._rows()) + bands + foot_html(self.ratings[0].caution)
+        return criteria_html(self._title, self._rows()) + bands + foot_html(self.caution)
 
     def __repr__(self) -> str:
         return f"RatingStudy({self.runs} runs, {dict(self.probability)})"

@@ -23,7 +23,8 @@ from .measures import (
     vehicle_intrusion,
 )
 from .occupant import occupant_risk
-from .rating import MODEL_CAUTION, Rating, first_reached
+from .rating import Rating, first_reached
+from .rating_caution import level_caution, model_caution, roadside_lines
 from .roadside import RoadsideStandard, RoadsideTest
 from .vehicles import HEAVY_KG, StandardVehicle, standard_vehicle
 
@@ -41,19 +42,6 @@ _UPRIGHT = (
 _NO_ANGLE = "; EN 1317 gives no angle: the first is MASH's for light vehicles, the second chosen"
 _SLACK = 1e-9  # rounding of the units
 _LEAST_SEVERITY = 0.92  # of the nominal impact severity, MASH
-_TIPS = (
-    "The overturning moment of a segment is {ratio:.1f} times its restoring one: it would begin to tip, "
-    "which is not computed. Containment, widths and occupant risk hold for segments that stay upright."
-)
-_ROLLS_LITTLE = (
-    "Springs and camber thrust are estimates: computed vehicles may roll too little. The 10000S overturns at "
-    "a New Jersey barrier of 0.81 m, as published. It stays upright at 0.91 m and 15 deg, as commonly "
-    "reported; at 16 deg it tips late. A heavy vehicle that is computed upright may roll over in a test."
-)
-_TANK = (
-    "Test 6-12 asks for a tractor with a tank trailer. A van trailer in its place, as the package has it, "
-    "rolls otherwise, and meets tall barriers with its box."
-)
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
 """Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""
 
@@ -90,16 +78,9 @@ def rate_roadside(
         intrusion,
         judged[0].passed is True,
         (*rows, reported),
-        " ".join([standard.caution, *_of_heavy(test), MODEL_CAUTION, *_tipping(result)]),
+        " ".join([standard.caution, *roadside_lines(result, test), model_caution(result.scene.barrier)]),
         test.vehicle.code,
     )
-
-
-def _of_heavy(test: RoadsideTest) -> list[str]:
-    """Return what bears on tests with trucks and buses."""
-    if test.vehicle.mass < HEAVY_KG:
-        return []
-    return [_ROLLS_LITTLE, _TANK] if test.vehicle.code == "36000T" else [_ROLLS_LITTLE]
 
 
 def _test_of(
@@ -265,12 +246,6 @@ def _working_width(result: Result) -> float:
     return rear - extent.front
 
 
-def _tipping(result: Result) -> list[str]:
-    """Return a caution if a free-standing segment would begin to tip."""
-    ratio = float(result.metrics.get("max_overturning_ratio", 0.0))
-    return [_TIPS.format(ratio=ratio)] if ratio > 1.0 else []
-
-
 def _deflection(result: Result) -> float:
     """Return the dynamic deflection of the barrier [m]; 0 where it is fixed and rigid."""
     return float(result.metrics.get("barrier_deflection", 0.0))
@@ -409,7 +384,7 @@ def level_rating(standard: RoadsideStandard, level: str, ratings: Sequence[Ratin
         max(part.penetration for part in parts),
         all(part.contained for part in parts),
         rows,
-        max((part.caution for part in parts), key=len),  # one with a segment that would tip, if any
+        level_caution({name: by_test[name].caution for name in standard.levels[level]}),
         ", ".join(part.vehicle_class for part in parts),
     )
 
