@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Result, Simulation, Vehicle, units
 from birm3d.assessment import Rating
-from birm3d.assessment.rating_caution import level_caution, model_caution
 from birm3d.assessment.roadside_rating import _upright
 
 PICKUP = Vehicle.preset("mash_2270p", mesh_density=0.1)
@@ -236,38 +235,3 @@ def test_one_barrier_may_stand_elsewhere_for_each_test() -> None:
         for vehicle, wall in zip((car, pickup), walls, strict=True)
     ]
     assert birm3d.rate(runs, "MASH TL-3").designation.startswith("MASH TL-3: ")
-
-
-@pytest.mark.parametrize("standard", ["IWA 14-1", "ISO 22343-1", "ASTM F2656", "PAS 68", "SD-STD-02.01"])
-def test_security_standards_tell_of_segments_that_would_tip(heavy_blow: Result, standard: str) -> None:
-    """And no free-standing barrier is said to be rigid and not to give way."""
-    ratio = heavy_blow.metrics["max_overturning_ratio"]
-    code = {"ASTM F2656": "PU", "SD-STD-02.01": "15,000-lb truck"}.get(standard, "N1G")
-    caution = birm3d.rate(heavy_blow, standard, vehicle_class=code).caution
-    assert f"segment is {ratio:.1f} times its restoring one: it would begin to tip" in caution
-    assert "modelled as rigid" not in caution
-    assert "do not tip or break" in caution
-
-
-@pytest.fixture(scope="module")
-def heavy_blow() -> Result:
-    barrier = Barrier.jersey(length=60.0, segments=15, free_standing=True)
-    result = Simulation(Vehicle.preset("pickup_4x4_2500", mesh_density=0.1), barrier, 13.33).run()
-    assert result.metrics["max_overturning_ratio"] > 2.0
-    return result
-
-
-def test_what_the_model_says_of_a_barrier() -> None:
-    tubes = Barrier.bollards(count=3, diameter=0.2, wall_thickness=0.01, yield_stress=3e8)
-    rigid = "Barriers that are modelled as rigid do not give way"
-    free = Barrier.jersey(length=30.0, segments=5, free_standing=True)
-    for barrier, told in ((Barrier.bollards(), True), (None, True), (tubes, False), (free, False)):
-        text = model_caution(barrier)
-        assert (rigid in text) is told
-        assert text.startswith("Indicative: computed, not tested.")
-    assert "Posts yield" in model_caution(tubes)
-
-
-def test_the_caution_of_a_level_says_which_tests_it_is_about() -> None:
-    text = level_caution({"a": "All. Of two. Of a.", "b": "All. Of two.", "c": "All. Of c 1.2 m. Long."})
-    assert text == "All. Tests a, b: Of two. Test a: Of a. Test c: Of c 1.2 m. Long."

@@ -6,12 +6,13 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from .. import units
 from ..barrier.base import Barrier
 from .vehicles import HEAVY_KG
 
 if TYPE_CHECKING:
     from ..result import Result
-    from .roadside import RoadsideTest
+    from .roadside import RoadsideStandard, RoadsideTest
 
 __all__ = ["level_caution", "model_caution", "roadside_lines", "tipping_lines"]
 
@@ -42,6 +43,18 @@ _TANK = (
     "Test 6-12 asks for a tractor with a tank trailer. A van trailer in its place, as the package has it, "
     "rolls otherwise, and meets tall barriers with its box."
 )
+_LOW = (
+    "The barrier ends {top:.2f} m above the ground; at least {least:.2f} m is commonly reported for {level} "
+    "({inches:g} in{older}), of AASHTO LRFD section 13 and MASH: check the text. A vehicle that is computed "
+    "upright at a lower barrier may go over it in a test."
+)
+_LEAST_INCHES = {"TL-1": 27.0, "TL-2": 27.0, "TL-3": 29.0, "TL-4": 36.0, "TL-5": 42.0, "TL-6": 90.0}
+"""Least height of a rail, commonly reported of AASHTO LRFD section 13 and MASH: check the text.
+
+EN 1317 has none.
+"""
+_OLDER = {"TL-4": "; 32 in by NCHRP 350"}
+_ROUNDED = 0.01  # m; heights are given in whole centimetres, as 0.91 m for 36 in
 
 
 def model_caution(barrier: Barrier | None) -> str:
@@ -60,13 +73,28 @@ def tipping_lines(result: Result) -> Iterator[str]:
         yield _TIPS.format(ratio=ratio)
 
 
-def roadside_lines(result: Result, test: RoadsideTest) -> Iterator[str]:
+def roadside_lines(result: Result, standard: RoadsideStandard, test: RoadsideTest) -> Iterator[str]:
     """Yield what bears on a rating as a test of a roadside barrier."""
+    assert result.scene.barrier is not None  # without one there is no rating
+    yield from _low_lines(result.scene.barrier, standard, test)
     if test.vehicle.mass >= HEAVY_KG:
         yield _ROLLS_LITTLE
     if test.vehicle.code == "36000T":
         yield _TANK
     yield from tipping_lines(result)
+
+
+def _low_lines(barrier: Barrier, standard: RoadsideStandard, test: RoadsideTest) -> Iterator[str]:
+    """Yield a caution if the barrier is lower than what is required of the lowest level with this test."""
+    levels = [level for level, tests in standard.levels.items() if test.name in tests]
+    known = [level for level in levels if standard.name == "MASH" and level in _LEAST_INCHES]
+    if not known:
+        return
+    level = min(known, key=lambda one: _LEAST_INCHES[one])
+    inches, top = _LEAST_INCHES[level], barrier._top
+    least = units.inch(inches)
+    if top < least - _ROUNDED:
+        yield _LOW.format(top=top, least=least, level=level, inches=inches, older=_OLDER.get(level, ""))
 
 
 def level_caution(cautions: Mapping[str, str]) -> str:

@@ -78,7 +78,9 @@ def rate_roadside(
         intrusion,
         judged[0].passed is True,
         (*rows, reported),
-        " ".join([standard.caution, *roadside_lines(result, test), model_caution(result.scene.barrier)]),
+        " ".join(
+            [standard.caution, *roadside_lines(result, standard, test), model_caution(result.scene.barrier)]
+        ),
         test.vehicle.code,
     )
 
