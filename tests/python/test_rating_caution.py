@@ -81,3 +81,14 @@ def test_no_least_height_where_none_is_known(car: Vehicle) -> None:
     small = car.scaled_to(900.0)
     assert "AASHTO" not in rated(small, Barrier.rigid_wall(height=0.6), "EN 1317 TB11", 20.0)
     assert "AASHTO" not in rated(car, Barrier.rigid_wall(), "MASH 6-10")  # without an end above
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_roll_of_light_vehicles_at_sloped_faces_is_called_an_estimate(car: Vehicle) -> None:
+    told = "do not choose a profile"
+    truck = Vehicle.preset("mash_10000s", mesh_density=0.1)
+    straight = Barrier.jersey(profile=((0.3, 0.0), (0.3, 1.0)))
+    for profile in ("new_jersey", "f_shape", "single_slope"):
+        assert told in rated(car, Barrier.jersey(profile=profile, height=0.81), "MASH 3-10")
+    for vehicle, barrier in ((car, Barrier.rigid_wall()), (car, straight), (truck, Barrier.jersey())):
+        assert told not in rated(vehicle, barrier, "MASH")

@@ -6,8 +6,11 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from .. import units
 from ..barrier.base import Barrier
+from ..barrier.kinds import Jersey
 from .vehicles import HEAVY_KG
 
 if TYPE_CHECKING:
@@ -48,6 +51,10 @@ _LOW = (
     "({inches:g} in{older}), of AASHTO LRFD section 13 and MASH: check the text. A vehicle that is computed "
     "upright at a lower barrier may go over it in a test."
 )
+_SLOPED = (
+    "The barrier has sloped faces. How a light vehicle climbs and rolls there is an estimate: do not choose "
+    "a profile or its height by it."
+)
 _LEAST_INCHES = {"TL-1": 27.0, "TL-2": 27.0, "TL-3": 29.0, "TL-4": 36.0, "TL-5": 42.0, "TL-6": 90.0}
 """Least height of a rail, commonly reported of AASHTO LRFD section 13 and MASH: check the text.
 
@@ -79,9 +86,16 @@ def roadside_lines(result: Result, standard: RoadsideStandard, test: RoadsideTes
     yield from _low_lines(result.scene.barrier, standard, test)
     if test.vehicle.mass >= HEAVY_KG:
         yield _ROLLS_LITTLE
+    elif _is_sloped(result.scene.barrier):
+        yield _SLOPED
     if test.vehicle.code == "36000T":
         yield _TANK
     yield from tipping_lines(result)
+
+
+def _is_sloped(barrier: Barrier) -> bool:
+    """Whether a barrier is a Jersey barrier whose faces are not upright."""
+    return isinstance(barrier, Jersey) and float(np.ptp(barrier.half_profile()[:, 0])) > 0.0
 
 
 def _low_lines(barrier: Barrier, standard: RoadsideStandard, test: RoadsideTest) -> Iterator[str]:
