@@ -280,3 +280,12 @@ def test_who_rolls_over_on_the_traffic_side_is_contained() -> None:
     result = Simulation(Vehicle.preset("mash_10000s"), Barrier.rigid_wall(height=0.82), 25.0, 15.0).run()
     assert result.outcome == "rolled_over"
     assert result.position[-1, 0] < 0.0
+
+
+@pytest.mark.parametrize("height", [0.6, 0.66])
+def test_a_pickup_far_beyond_its_tipping_angle_does_not_stand_up_again(height: float) -> None:
+    """It tips at 50 degrees. Once camber thrust of tyres on their side walls set it down from 74 degrees."""
+    pickup = Vehicle.preset("mash_2270p")
+    result = Simulation(pickup, Barrier.jersey(height=height), 27.78, 25.0).run()
+    assert result.outcome == "rolled_over"
+    assert abs(result.roll[-1]) > 60.0

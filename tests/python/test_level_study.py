@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import itertools
 import json
+import re
 from functools import cache
 
 import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Prediction, Simulation, Vehicle, units
-from birm3d.assessment import LevelStudy, RatingStudy
+from birm3d.assessment import LevelStudy, Rating, RatingStudy
+from birm3d.assessment.criteria import Criterion
+from birm3d.assessment.roadside import EN_1317
 from birm3d.base.intervals import wilson
 
 LEVEL = "EN 1317 H1"
@@ -39,6 +42,25 @@ def test_probabilities_are_those_of_all_pairs_of_vehicles() -> None:
     assert list(level.tests) == ["TB11", "TB42"]
     assert level.tests["TB11"].test == "TB11"
     assert 0.0 < np.mean([one.passed for one in small]) < 1.0  # else the pairs tell nothing
+
+
+def test_a_run_without_a_rating_counts_in_the_level() -> None:
+    """A pass of the level takes a pass of both tests, and one that fails decides it."""
+
+    def part(test: str, passed: bool) -> Rating:
+        rows = (Criterion("upright", "", "", "", passed),)
+        word = "pass" if passed else "fail"
+        return Rating("EN 1317", f"EN 1317 {test}: {word}", 0.5, True, rows, "c", "car")
+
+    open_run = "result must have run until the outcome is decided (duration=None), got one that ends at 5 s"
+    small = RatingStudy({0: part("TB11", True), 1: part("TB11", False)}, {})
+    large = RatingStudy({0: part("TB42", True)}, {1: open_run, 2: open_run, 3: open_run})
+    level = LevelStudy(EN_1317, "H1", [small, large])
+    expected = {f"{LEVEL}: fail": 0.5, f"{LEVEL}: no rating": 0.375, f"{LEVEL}: pass": 0.125}
+    assert level.probability == pytest.approx(expected)
+    assert level.contained == pytest.approx(0.25)
+    assert level.interval(0.5) == wilson(0.5, 2)
+    assert re.search(r"test TB42: pass +25\.0%", str(level))
 
 
 def test_what_it_tells() -> None:

@@ -14,6 +14,7 @@ from birm3d.assessment import STANDARDS
 from birm3d.assessment.measures import barrier_extent, exit_box, vehicle_intrusion
 from birm3d.assessment.roadside import EN_1317, MASH
 from birm3d.assessment.security import SECURITY
+from birm3d.base.intervals import wilson
 from scipy import stats
 from scipy.spatial.transform import Rotation
 
@@ -424,6 +425,24 @@ def test_probability_of_each_class() -> None:
     assert found.contained == 1.0
     assert "M50-P1" in found.summary()
     assert "Caution" in found._repr_html_()
+
+
+def test_runs_without_a_rating_are_a_class_of_their_own() -> None:
+    """Runs that end at 30 ms are not over yet: they are neither dropped nor passed."""
+    vehicle = block(6800.0, 4.0e6)
+    base = Simulation(vehicle, Barrier.rigid_wall(friction=0.0), 22.0, settings=FREE, duration=0.15)
+    study = birm3d.sweep(base, {"impact_speed": [21.0, 22.0, 23.0], "duration": [0.03, 0.15]})
+    found = rate(study, "ASTM F2656", vehicle_class="M", reference_point="mass_center")
+    undecided = "no rating: outcome not decided"
+    assert len(found.ratings) == len(found.failed) == 3
+    assert found.runs == 6
+    assert found.probability[undecided] == 0.5
+    assert sum(found.probability.values()) == pytest.approx(1.0)
+    assert found.contained == 0.5
+    assert found.interval(0.5) == pytest.approx(wilson(0.5, 6))
+    assert undecided in found.summary()
+    assert "3 of 6 runs that are rated" in found.summary()
+    assert found.to_dict()["probability"][undecided] == 0.5
 
 
 # ---- bad input ---------------------------------------------------------------------------------------------

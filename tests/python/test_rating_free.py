@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Simulation, Vehicle, units
 from birm3d.assessment import Rating
+from birm3d.assessment.roadside_rating import _upright
 
 PICKUP = Vehicle.preset("mash_2270p", mesh_density=0.1)
 
@@ -109,6 +112,49 @@ def test_a_vehicle_that_passed_and_rolled_over_is_not_called_upright() -> None:
     assert (row["upright"].value, row["upright"].passed) == ("rolled over", False)
     box = row["exit box, wheels from the face"]  # of what leaves on the traffic side
     assert (box.passed, box.grade) == (None, "not contained")
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_a_truck_on_its_side_is_not_upright() -> None:
+    """It slides on along the wall at 88 degrees, less than the 90 of "rolled over"."""
+    wall, truck = Barrier.rigid_wall(height=0.77), Vehicle.preset("heavy_truck_29500")
+    result = Simulation(truck, wall, 18.06, 20.0).run()
+    greatest, last = float(np.abs(result.roll).max()), abs(float(result.roll[-1]))
+    assert result.outcome == "redirected"
+    assert 75.0 < greatest < 90.0
+    rating = birm3d.rate(result, "EN 1317 TB71")
+    assert rating.designation == "EN 1317 TB71: fail"
+    assert rating.contained
+    row = {one.name: one for one in rating.criteria}
+    assert (row["upright"].value, row["upright"].passed) == ("redirected, not upright", False)
+    assert "EN 1317 gives no angle" in row["upright"].limit
+    assert row["roll at the end"].value == last
+    heavy = birm3d.rate(result, "MASH 4-12", vehicle_class="10000S")
+    row = {one.name: one for one in heavy.criteria}
+    assert (row["G: upright"].grade, row["G: upright"].passed) == ("no", None)
+
+
+@pytest.mark.parametrize(
+    ("greatest", "end", "pitch", "upright"),
+    [
+        (74.0, 44.0, 74.0, True),
+        (76.0, 10.0, 0.0, False),
+        (50.0, 46.0, 0.0, False),
+        (-50.0, -46.0, 0.0, False),
+        (10.0, 1.0, 76.0, False),
+    ],
+)
+def test_angles_of_a_vehicle_that_is_upright(
+    greatest: float, end: float, pitch: float, upright: bool
+) -> None:
+    history = SimpleNamespace(roll=np.array([0.0, greatest, end]), pitch=np.array([0.0, pitch, 0.0]))
+    run = SimpleNamespace(
+        scene=SimpleNamespace(vehicle=SimpleNamespace(units=(None,))),
+        outcome="redirected",
+        _event=SimpleNamespace(rolled_over=False),
+        unit=lambda number: history,
+    )
+    assert _upright(run)[1] is upright
 
 
 @pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")

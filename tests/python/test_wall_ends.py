@@ -89,3 +89,15 @@ def test_the_factor_counts_beside_the_rails_alone() -> None:
 
     assert aside(0.2, 1.25) > 1.5 * aside(0.2, 0.35)
     assert aside(0.4, 1.25) == pytest.approx(aside(0.4, 0.35), rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["passenger_car", "pickup", "mash_2270p"])
+def test_from_which_speed_a_quarter_of_a_front_slides_off(name: str) -> None:
+    """The page of validation has these speeds; tests with a small overlap are at 64 km/h (17.8 m/s)."""
+
+    def outcome(speed: float, overlap: float) -> str:
+        return Simulation(Vehicle.preset(name), Barrier.planter(), speed, overlap=overlap).run().outcome
+
+    assert [outcome(speed, 0.25) for speed in (8.9, 13.4, 15.6)] == 3 * ["stopped"]
+    assert [outcome(speed, 0.2) for speed in (8.9, 13.4)] == 2 * ["stopped"]
+    assert [outcome(17.0, overlap) for overlap in (0.2, 0.25)] == 2 * ["passed"]

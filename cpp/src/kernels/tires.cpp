@@ -97,12 +97,20 @@ Wrench skid_friction(const UnitOnTires& on, std::span<const double> normal_impul
     return sum;
 }
 
+// Tilts from which a tyre comes to lie on its side wall, and from which it has no camber thrust (rad). Estimates.
+constexpr double leaves_tread = 0.785, on_side_wall = 1.05;
+
+double camber_of(double tilt) {
+    const double on_tread = (on_side_wall - std::abs(tilt)) / (on_side_wall - leaves_tread);
+    return tilt * std::clamp(on_tread, 0.0, 1.0);
+}
+
 // The direction to the left in which a wheel does not roll: along its axle, seen from above, steered and turned by camber.
 Vec3 direction_across(const Wheel& wheel, const Vec3& left, const Vec3& turned_left, double horizontal,
                       const Mat3& R) {
     const Vec3& across = wheel.steers() ? turned_left : left;
     if (!(wheel.camber_ratio > 0.0)) return across;
-    const double leans_right = std::atan2(R(2, 1), horizontal);
+    const double leans_right = camber_of(std::atan2(R(2, 1), horizontal));
     return turned_by(-wheel.camber_ratio * leans_right, across);
 }
 

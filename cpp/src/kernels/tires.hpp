@@ -9,6 +9,7 @@
 //                   may brake, against the velocity of the point of contact; sqrt(1 - b^2) of it steers (friction
 //                   circle), and at b = 1 the locked wheel slides. A tilted wheel rolls as if it were turned to the
 //                   side that it leans to, by `camber_ratio` of its tilt: camber thrust that never adds energy.
+//                   On its side wall it has none.
 //   skid            the paper's: nothing while the mass centre moves exactly along r, else mu N against its
 //                   velocity.
 // Both are reduced in proportion to the speed where they would otherwise reverse the sliding.

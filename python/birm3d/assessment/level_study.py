@@ -29,9 +29,10 @@ class LevelStudy:
     tests : mapping of str to RatingStudy
         Each test of the level -> ratings of its runs.
     probability : mapping of str to float
-        Each designation of the level -> its probability, the greatest first.
+        Each designation of the level -> its probability, the greatest first. ``"no rating"``: a test has
+        none, and no other one fails.
     contained : float
-        Probability that the vehicles of all tests are contained.
+        Probability that the vehicles of all tests are known to be contained.
     caution : str
     """
 
@@ -44,10 +45,17 @@ class LevelStudy:
             share = 1.0
             for _, part in combined:
                 share *= part
-            rating = level_rating(standard, level, [one for one, _ in combined])
-            found[rating.designation] = found.get(rating.designation, 0.0) + share
-            self.contained += share * rating.contained
-            self.caution = max(self.caution, rating.caution, key=len)
+            parts = [one for one, _ in combined]
+            rated = [one for one in parts if one is not None]
+            if len(rated) < len(parts):  # one test that fails decides the level
+                name = "no rating" if all(one.passed for one in rated) else "fail"
+                designation = f"{standard.name} {level}: {name}"
+            else:
+                rating = level_rating(standard, level, rated)
+                designation = rating.designation
+                self.contained += share * rating.contained
+                self.caution = max(self.caution, rating.caution, key=len)
+            found[designation] = found.get(designation, 0.0) + share
         self.probability: Mapping[str, float] = FrozenMapping(
             dict(sorted(found.items(), key=lambda one: -one[1]))
         )
@@ -68,7 +76,7 @@ class LevelStudy:
 
     @property
     def _runs(self) -> int:
-        return min(len(study.ratings) for study in self.tests.values())
+        return min(study.runs for study in self.tests.values())
 
     @property
     def _rows(self) -> list[Criterion]:
@@ -77,7 +85,7 @@ class LevelStudy:
             low, high = self.interval(min(share, 1.0))
             rows.append(Criterion(name, f"{share:.1%}", "", f"{low:.1%} to {high:.1%}", None))
         for name, study in self.tests.items():
-            good = sum(rating.passed for rating in study.ratings) / len(study.ratings)
+            good = sum(rating.passed for rating in study.ratings) / study.runs
             low, high = study.interval(good)
             rows.append(Criterion(f"test {name}: pass", f"{good:.1%}", "", f"{low:.1%} to {high:.1%}", None))
         return rows
@@ -115,12 +123,16 @@ class LevelStudy:
         return f"LevelStudy({self.standard} {self.level!r}, {dict(self.probability)})"
 
 
-def _kinds(study: RatingStudy) -> list[tuple[Rating, float]]:
-    """Return one rating of each kind that the runs of a test have, and the share of the runs with it."""
+def _kinds(study: RatingStudy) -> list[tuple[Rating | None, float]]:
+    """Return one rating of each kind that the runs of a test have, and the share of the runs with it.
+
+    ``None`` stands for the runs without a rating.
+    """
     kinds: dict[tuple[str, bool, bool], list[Rating]] = {}
     for rating in study.ratings:
         kinds.setdefault((rating.designation, rating.contained, rating.passed), []).append(rating)
-    return [(of[0], len(of) / len(study.ratings)) for of in kinds.values()]
+    found: list[tuple[Rating | None, float]] = [(of[0], len(of) / study.runs) for of in kinds.values()]
+    return [*found, (None, len(study.failed) / study.runs)] if study.failed else found
 
 
 def level_study(standard: RoadsideStandard, level: str, studies: Sequence[RatingStudy]) -> LevelStudy:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 
 __all__ = ["RatingStudy", "rate_study", "rating_study"]
 
+_UNDECIDED = "result must have run until"
+_UNKNOWN = "vehicle must be one that"
+
 
 class RatingStudy:
     """Ratings of the runs of a study; made by :func:`birm3d.rate`. Always indicative.
@@ -31,9 +35,9 @@ class RatingStudy:
     Attributes
     ----------
     ratings : tuple of Rating
-        In the order of the study's runs; runs that failed are left out.
+        In the order of the study's runs, of those that could be rated.
     failed : mapping of int to str
-        Number of each run that failed, or could not be rated -> its reason.
+        Number of each run that failed, or could not be rated -> its reason. Shares count these runs, too.
     """
 
     def __init__(self, ratings: Mapping[int, Rating], failed: Mapping[int, str]) -> None:
@@ -42,24 +46,34 @@ class RatingStudy:
 
     @property
     def designation(self) -> tuple[str, ...]:
-        """Of each run."""
+        """Of each run that could be rated."""
         return tuple(rating.designation for rating in self.ratings)
 
     @property
     def penetration(self) -> npt.NDArray[np.float64]:
-        """Of each run, shape (n,) [m]; see :class:`birm3d.assessment.Rating`."""
+        """Of each run that could be rated, shape (n,) [m]; see :class:`birm3d.assessment.Rating`."""
         return np.array([rating.penetration for rating in self.ratings])
 
     @property
+    def counts(self) -> Mapping[str, int]:
+        """Number of the runs that have each designation, or ``"no rating: why"``; the greatest first."""
+        missing = [_without_rating(reason) for reason in self.failed.values()]
+        return FrozenMapping(dict(Counter([*self.designation, *missing]).most_common()))
+
+    @property
+    def runs(self) -> int:
+        """Number of all runs, also of those without a rating."""
+        return len(self.ratings) + len(self.failed)
+
+    @property
     def probability(self) -> Mapping[str, float]:
-        """Share of the runs that have each designation, the greatest first."""
-        n = len(self.ratings)
-        return FrozenMapping({name: count / n for name, count in Counter(self.designation).most_common()})
+        """Share of all runs that have each designation, or ``"no rating: why"``; the greatest first."""
+        return FrozenMapping({name: count / self.runs for name, count in self.counts.items()})
 
     @property
     def contained(self) -> float:
-        """Share of the runs in which the vehicle was contained."""
-        return sum(rating.contained for rating in self.ratings) / len(self.ratings)
+        """Share of all runs in which the vehicle is known to be contained."""
+        return sum(rating.contained for rating in self.ratings) / self.runs
 
     @checked
     def interval(self, share: float) -> tuple[float, float]:
@@ -70,7 +84,12 @@ class RatingStudy:
         ValueError
             If the share is not from 0 to 1.
         """
-        return wilson(share, len(self.ratings))
+        return wilson(share, self.runs)
+
+    @property
+    def caution(self) -> str:
+        """Of the run with the most to say, as one in which a segment would tip."""
+        return max((rating.caution for rating in self.ratings), key=len)
 
     @property
     def test(self) -> str:
@@ -79,14 +98,17 @@ class RatingStudy:
 
     @property
     def rows(self) -> list[tuple[str, str, str, str, str]]:
-        """Name, median, 80 % band, limit and share of the runs within it of each criterion, as text."""
+        """Name, median, 80 % band, limit and share of the runs within it of each criterion, as text.
+
+        Of the runs that could be rated.
+        """
         return band_rows(self.ratings)
 
     def _rows(self) -> list[Criterion]:
         rows = []
         for name, share in self.probability.items():
             low, high = self.interval(share)
-            limit = f"{low:.1%} to {high:.1%} by {len(self.ratings)} runs"
+            limit = f"{low:.1%} to {high:.1%} by {self.runs} runs"
             rows.append(Criterion(name, f"{share:.1%}", "", limit, None))
         low, median, high = quantiles(self.penetration, SHARE)
         rows.append(
@@ -101,10 +123,16 @@ class RatingStudy:
         what = "indicative: probability of each class"
         return f"{first.standard}, {what} (vehicle {first.vehicle_class}){without}"
 
+    @property
+    def _of_rated(self) -> str:
+        """Return which runs the bands are of."""
+        rated = f"the {len(self.ratings)} of {self.runs} runs that are rated" if self.failed else "the runs"
+        return f"Each criterion over {rated}"
+
     def summary(self) -> str:
         """Return the probabilities with their sampling errors, each criterion's band, and the caution."""
-        tables = [criteria_text(self._rows()), "", table_text(BAND_HEAD, self.rows)]
-        return "\n".join([self._title, *tables, f"Caution: {self.ratings[0].caution}"])
+        tables = [criteria_text(self._rows()), "", self._of_rated, table_text(BAND_HEAD, self.rows)]
+        return "\n".join([self._title, *tables, f"Caution: {self.caution}"])
 
     __str__ = summary
 
@@ -117,15 +145,26 @@ class RatingStudy:
             "penetration": self.penetration.tolist(),
             "criteria": [dict(zip(BAND_HEAD, row, strict=True)) for row in self.rows],
             "failed": {str(run): reason for run, reason in self.failed.items()},
-            "caution": self.ratings[0].caution,
+            "caution": self.caution,
         }
 
     def _repr_html_(self) -> str:
-        bands = table_html("Each criterion over the runs", BAND_HEAD, self.rows)
-        return criteria_html(self._title, self._rows()) + bands + foot_html(self.ratings[0].caution)
+        bands = table_html(self._of_rated, BAND_HEAD, self.rows)
+        return criteria_html(self._title, self._rows()) + bands + foot_html(self.caution)
 
     def __repr__(self) -> str:
-        return f"RatingStudy({len(self.ratings)} runs, {dict(self.probability)})"
+        return f"RatingStudy({self.runs} runs, {dict(self.probability)})"
+
+
+def _without_rating(reason: str) -> str:
+    """Return the class of a run without a rating, by its reason."""
+    if reason.startswith(_UNDECIDED):
+        why = "outcome not decided"
+    elif reason.startswith(_UNKNOWN):
+        why = "the standard has no vehicle of that mass"
+    else:
+        why = re.split("[,;] got ", reason)[0]
+    return f"no rating: {why}"
 
 
 def rate_study(study: Study, rate: Callable[[Result], Rating]) -> RatingStudy:

@@ -7,15 +7,8 @@ from dataclasses import dataclass
 
 from .criteria import Criterion, criteria_html, criteria_text
 
-__all__ = ["MODEL_CAUTION", "Rating"]
+__all__ = ["Rating", "first_reached"]
 
-MODEL_CAUTION = (
-    "Indicative: computed, not tested. The vehicle is one rigid body, or two, with a crushable skin: a load "
-    "bed is fixed to the frame unless it was let go, the engine can not stop before the cab, wheels stay on; "
-    "barriers that are "
-    "modelled as rigid do not give way, so that tests read more penetration and deflection. "
-    "Limits and tolerances are those that are commonly reported of the standard: check them in its text."
-)
 _NO_BAND = (
     "No band: these are runs of one vehicle. rate(birm3d.predict(simulation), ...) says what others of its "
     "class are rated."

@@ -23,7 +23,8 @@ from .measures import (
     vehicle_intrusion,
 )
 from .occupant import occupant_risk
-from .rating import MODEL_CAUTION, Rating, first_reached
+from .rating import Rating, first_reached
+from .rating_caution import level_caution, model_caution, roadside_lines
 from .roadside import RoadsideStandard, RoadsideTest
 from .vehicles import HEAVY_KG, StandardVehicle, standard_vehicle
 
@@ -33,22 +34,14 @@ if TYPE_CHECKING:
 __all__ = ["rate_roadside"]
 
 _STILL = 0.5  # m/s into the barrier, of a vehicle that slides along it
-_MOST_ROLL = 75.0  # deg; MASH criterion F
+_MOST_ROLL = 75.0  # deg; MASH criterion F, also of pitch
+_MOST_AT_END = 45.0  # deg; a vehicle that is left further over lies on the barrier, or is about to fall
+_UPRIGHT = (
+    f"not rolled over; roll and pitch within {_MOST_ROLL:g} deg, roll at the end within {_MOST_AT_END:g} deg"
+)
+_NO_ANGLE = "; EN 1317 gives no angle: the first is MASH's for light vehicles, the second chosen"
 _SLACK = 1e-9  # rounding of the units
 _LEAST_SEVERITY = 0.92  # of the nominal impact severity, MASH
-_TIPS = (
-    "The overturning moment of a segment is {ratio:.1f} times its restoring one: it would begin to tip, "
-    "which is not computed. Containment, widths and occupant risk hold for segments that stay upright."
-)
-_ROLLS_LITTLE = (
-    "Springs and camber thrust are estimates: computed vehicles may roll too little. The 10000S overturns at "
-    "a New Jersey barrier of 0.81 m, as published. It stays upright at 0.91 m and 15 deg, as commonly "
-    "reported; at 16 deg it tips late. A heavy vehicle that is computed upright may roll over in a test."
-)
-_TANK = (
-    "Test 6-12 asks for a tractor with a tank trailer. A van trailer in its place, as the package has it, "
-    "rolls otherwise, and meets tall barriers with its box."
-)
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
 """Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""
 
@@ -85,16 +78,11 @@ def rate_roadside(
         intrusion,
         judged[0].passed is True,
         (*rows, reported),
-        " ".join([standard.caution, *_of_heavy(test), MODEL_CAUTION, *_tipping(result)]),
+        " ".join(
+            [standard.caution, *roadside_lines(result, standard, test), model_caution(result.scene.barrier)]
+        ),
         test.vehicle.code,
     )
-
-
-def _of_heavy(test: RoadsideTest) -> list[str]:
-    """Return what bears on tests with trucks and buses."""
-    if test.vehicle.mass < HEAVY_KG:
-        return []
-    return [_ROLLS_LITTLE, _TANK] if test.vehicle.code == "36000T" else [_ROLLS_LITTLE]
 
 
 def _test_of(
@@ -219,9 +207,20 @@ def _containment(result: Result, name: str) -> Criterion:
 
 
 def _upright(result: Result) -> tuple[str, bool]:
-    """Return what became of the vehicle in words, and whether it stayed upright, wherever it went."""
-    rolled = has_rolled_over(result)
-    return "rolled over" if rolled else outcome_words(result.outcome), not rolled
+    """Return what became of the vehicle in words, and whether it stayed upright, wherever it went.
+
+    A run ends at separation or later, so that the roll at its end is the last that is known.
+    """
+    if has_rolled_over(result):
+        return "rolled over", False
+    became, within = outcome_words(result.outcome), max(_attitude(result)) <= _MOST_ROLL
+    upright = within and _roll_at_end(result) <= _MOST_AT_END
+    return became if upright else f"{became}, not upright", upright
+
+
+def _roll_at_end(result: Result) -> float:
+    """Return the greatest roll of all units when the run ends [deg]."""
+    return max(abs(float(result.unit(i).roll[-1])) for i in range(len(result.scene.vehicle.units)))
 
 
 def _attitude(result: Result) -> tuple[float, float]:
@@ -247,12 +246,6 @@ def _working_width(result: Result) -> float:
         corners = (base_corners(result) - np.asarray(barrier.origin)[:2]) @ across
         rear = max(rear, float(corners.max()))
     return rear - extent.front
-
-
-def _tipping(result: Result) -> list[str]:
-    """Return a caution if a free-standing segment would begin to tip."""
-    ratio = float(result.metrics.get("max_overturning_ratio", 0.0))
-    return [_TIPS.format(ratio=ratio)] if ratio > 1.0 else []
 
 
 def _deflection(result: Result) -> float:
@@ -282,7 +275,7 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
     ]
     if light:
         rows += [
-            Criterion("F: upright", became, "", "not rolled over", upright),
+            Criterion("F: upright", became, "", _UPRIGHT, upright),
             Criterion("F: greatest roll", roll, "deg", f"{_MOST_ROLL:g} deg", roll <= _MOST_ROLL),
             Criterion("F: greatest pitch", pitch, "deg", f"{_MOST_ROLL:g} deg", pitch <= _MOST_ROLL),
             graded("H: OIV, longitudinal", risk.oiv_x, "m/s", limits.velocity),
@@ -302,6 +295,7 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
             ),
             Criterion(_roll_name(result), roll, "deg", "", None),
         ]
+    rows.append(Criterion("roll at the end", _roll_at_end(result), "deg", "", None))
     # MASH measures to the furthest part of the barrier or of the vehicle, EN 1317 to that of the barrier.
     width = max(_working_width(result), intrusion)
     rows += [
@@ -322,8 +316,9 @@ def _european(result: Result, test: RoadsideTest, light: bool, intrusion: float)
     contained = _containment(result, "containment")
     rows: list[Criterion] = [
         contained,
-        Criterion("upright", became, "", "not rolled over", upright),
+        Criterion("upright", became, "", _UPRIGHT + _NO_ANGLE, upright),
         Criterion(_roll_name(result), roll, "deg", "", None),
+        Criterion("roll at the end", _roll_at_end(result), "deg", "", None),
         _box_row(exit_box(result, not light), judged=True, contained=contained.passed is True),
     ]
     classes = []
@@ -391,7 +386,7 @@ def level_rating(standard: RoadsideStandard, level: str, ratings: Sequence[Ratin
         max(part.penetration for part in parts),
         all(part.contained for part in parts),
         rows,
-        max((part.caution for part in parts), key=len),  # one with a segment that would tip, if any
+        level_caution({name: by_test[name].caution for name in standard.levels[level]}),
         ", ".join(part.vehicle_class for part in parts),
     )
 
@@ -400,8 +395,9 @@ def _outcome_of(part: Rating) -> str:
     """Return what became of a test, and which criteria it failed."""
     failed = [f"{row.name} ({row.shown})" for row in part.criteria if row.passed is False]
     verdict = part.designation.partition(": ")[2]
-    if any(row.name == "G: upright" and row.grade == "no" for row in part.criteria):
-        verdict += ", rolled over"
+    for row in part.criteria:
+        if row.name == "G: upright" and row.grade == "no":
+            verdict += ", rolled over" if row.value == "rolled over" else ", not upright"
     return f"{verdict} by {', '.join(failed)}" if failed and verdict.startswith("fail") else verdict
 
 

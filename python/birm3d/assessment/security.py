@@ -20,7 +20,8 @@ from ..result.low_barrier import low_barrier_lines
 from ..vehicle.joint import LONGEST_SLIP
 from .criteria import Criterion
 from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
-from .rating import MODEL_CAUTION, Rating, first_reached
+from .rating import Rating, first_reached
+from .rating_caution import model_caution, tipping_lines
 from .vehicles import A_PILLAR, LOAD_BED, StandardVehicle, standard_vehicle
 
 if TYPE_CHECKING:
@@ -158,7 +159,15 @@ def rate_security(
         found.greatest,
         contained,
         (mass, *rows[:-1], measured, rows[-1], became),
-        " ".join([*low_barrier_lines(result), standard.caution, *_of_bed(result), MODEL_CAUTION]),
+        " ".join(
+            [
+                *low_barrier_lines(result),
+                *tipping_lines(result),
+                standard.caution,
+                *_of_bed(result),
+                model_caution(result.scene.barrier),
+            ]
+        ),
         vehicle.code,
     )
 

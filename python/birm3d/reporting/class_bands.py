@@ -104,7 +104,7 @@ def class_bands(
     for standard in standards:
         judged = {run: one.ratings[standard] for run, one in found.items() if standard in one.ratings}
         if judged:
-            missing = {run: "no rating" for run in found if run not in judged}
+            missing = {run: one.reasons[standard] for run, one in found.items() if run not in judged}
             ratings[standard] = rating_study(judged, {**failed, **missing})
     risks = {run: one.risk for run, one in found.items() if one.risk is not None}
     if loads is not None:
@@ -114,9 +114,13 @@ def class_bands(
 
 
 class _Seen(NamedTuple):
-    """What was seen of one vehicle of the class, as far as it has it."""
+    """What was seen of one vehicle of the class, as far as it has it.
+
+    reasons: standard -> why it does not rate the run.
+    """
 
     ratings: dict[str, Rating]
+    reasons: dict[str, str]
     risk: OccupantRisk | None
     loads: Seen | None
 
@@ -130,16 +134,16 @@ def _look(
 ) -> _Seen:
     """Return the ratings, the occupant risk and the loads of one vehicle of the class."""
     carried = None if loads is None else loads(run)
-    ratings = {}
+    ratings, reasons = {}, {}
     for standard in standards:
         try:
             ratings[standard] = rate(run, standard, vehicle_class=vehicle_class)
-        except ValueError:  # its outcome is not decided; the share of the others is shown
-            continue
+        except ValueError as reason:  # its outcome is not decided
+            reasons[standard] = str(reason)
     try:
-        return _Seen(ratings, occupant_risk(run) if with_risk else None, carried)
+        return _Seen(ratings, reasons, occupant_risk(run) if with_risk else None, carried)
     except ValueError:  # it touches nothing
-        return _Seen(ratings, None, carried)
+        return _Seen(ratings, reasons, None, carried)
 
 
 def band_of(bands: ClassBands | str, name: str, size: float = 1.0, form: str = ".4g") -> str:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping
 
-from ..assessment import RatingStudy
 from ..result.event import outcome_words
 from ..study import Study
 from .blocks import Table
@@ -31,7 +29,7 @@ def study_answers(case: Case) -> Iterator[tuple[str, str]]:
     if rated is not None:
         yield (
             f"Rating of these runs by {rated.ratings[0].standard}, indicative",
-            f"{_shares(study, Counter(rated.designation))}{_without(study, rated)}",
+            f"{_shares(study, rated.counts)}",
         )
     elif case.ratings:
         yield "Rating of these runs", f"none: {why_not_rated(study) or 'the standard can rate none of them'}"
@@ -52,11 +50,11 @@ def study_table(case: Case) -> Table | None:
         met = cells_of_share(study, sum(judged), len(judged)) if judged else ("reported", "–")
         rows.append((one.name, one.verdict, *bands.get(one.name, ("–", "–")), *met))
     word = "pass" if rating_of_run.passed else "FAIL"
-    n = len(rated.ratings)
-    met = cells_of_share(study, sum(rating.passed for rating in rated.ratings), n)
+    met = cells_of_share(study, sum(rating.passed for rating in rated.ratings), rated.runs)
     rows.append(("all of these, and contained", word, "–", "–", *met))
     return Table(
-        f"The study beside the verdict by {standard}, indicative: {n:,} of {len(study):,} runs are rated",
+        f"The study beside the verdict by {standard}, indicative: {len(rated.ratings):,} of {len(study):,} "
+        "runs are rated",
         (
             "criterion",
             "this run",
@@ -84,18 +82,3 @@ def _shares(study: Study, counts: Mapping[str, int]) -> str:
         interval = f" (95 % interval {interval_of_share(count, n)})" if study.grid is None else ""
         parts.append(f"{name} in {count:,} of {n:,}, {share_of_runs(count, n)}{interval}")
     return "; ".join(parts)
-
-
-def _without(study: Study, rated: RatingStudy) -> str:
-    """Return how many runs have no rating and why, as the end of a line."""
-    if not rated.failed:
-        return ""
-    reasons = Counter(_short(reason) for reason in rated.failed.values()).most_common()
-    told = "; ".join(f"{n:,} because {reason}" for reason, n in reasons)
-    return f". Not rated are {len(rated.failed):,} of {len(study):,} runs: {told}"
-
-
-def _short(reason: str) -> str:
-    if reason.startswith("vehicle must be one that"):
-        return "the standard has no vehicle of that mass"
-    return reason.partition("; got ")[0]

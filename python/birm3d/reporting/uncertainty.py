@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
@@ -107,17 +106,13 @@ def _study_blocks(case: Case, study: Study) -> Iterator[Block]:
     yield from _bands(study)
     if case.rating_study is not None:
         rated = case.rating_study
-        n = len(rated.ratings)
-        shares = [
-            (name, *cells_of_share(study, count, n))
-            for name, count in Counter(rated.designation).most_common()
-        ]
+        shares = [(name, *cells_of_share(study, count, rated.runs)) for name, count in rated.counts.items()]
         drawn = "Probability of each class" if study.grid is None else "Share of the runs in each class"
         yield Table(
             f"{drawn} by {rated.ratings[0].standard}, indicative",
             ("class", "runs", "95 % interval"),
             shares,
-            note=f"{n:,} of {len(study):,} runs were rated. {study_note(study)}",
+            note=f"{len(rated.ratings):,} of {len(study):,} runs were rated. {study_note(study)}",
             numbers=True,
         )
 

@@ -10,7 +10,7 @@ from statistics import median
 from ..assessment import DesignLoad, ElementDesign, OccupantRisk, Rating
 from ..assessment.criteria import Criterion
 from ..assessment.design_remarks import ASSUMED, greatest_of_periods
-from ..assessment.rating import MODEL_CAUTION
+from ..assessment.rating_caution import model_caution
 from ..assessment.vehicles import HEAVY_KG
 from ..result.element_loads import touched_elements
 from ..result.event import outcome_words
@@ -46,8 +46,7 @@ def verdict_section(case: Case) -> Section:
         blocks.append(Caution(case.bands.prediction.caution))
     if result.scene.barrier is None:
         blocks.append(Text(_NO_BARRIER))
-    for rating in case.ratings:
-        blocks.append(_rating_table(case, rating))
+    blocks += [_rating_table(case, rating) for rating in case.ratings]
     table = study_table(case)
     if table is not None:
         blocks.append(table)
@@ -55,8 +54,9 @@ def verdict_section(case: Case) -> Section:
         rows = [(name, _reason(case, reason)) for name, reason in case.not_rated.items()]
         blocks.append(Table("Standards that do not rate this run", ("standard", "why"), rows))
     if case.ratings:
-        own = (f"{one.standard}: {one.caution.replace(MODEL_CAUTION, '').strip()}" for one in case.ratings)
-        blocks += [Caution(text) for text in (MODEL_CAUTION, *own) if not text.endswith(":")]
+        model = model_caution(result.scene.barrier)
+        own = (f"{one.standard}: {one.caution.replace(model, '').strip()}" for one in case.ratings)
+        blocks += [Caution(text) for text in (model, *own) if not text.endswith(":")]
     return Section("Verdict", "verdict", blocks)
 
 
@@ -203,7 +203,7 @@ def _chances(case: Case, standard: str) -> str:
         return ""
     rated = case.bands.ratings[standard]
     shares = ", ".join(f"{name} {share:.0%}" for name, share in rated.probability.items())
-    return f". Of {len(rated.ratings)} vehicles of the class: {shares}"
+    return f". Of {rated.runs} vehicles of the class: {shares}"
 
 
 def _load_band(case: Case) -> str:

@@ -17,6 +17,7 @@ from ..simulation.simulation import Simulation
 from ..units import Quantity, si
 from ..vehicle.front_height import strong_height
 from .limit_search import CONTAINED, Effort, Limit, Question, search_limit
+from .runner import run_study
 
 __all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass", "least_tube_thickness"]
 
@@ -37,10 +38,12 @@ _OVER = (
     "bollards asks for 0.5 m or more."
 )
 _STRONG = "{:.2f} m, above which a third of the front resists"
-_SLIDES = (
-    "Computed, not tested. Segments slide but do not tip, and their joints do not break: look at "
-    "max_overturning_ratio too."
+_SLIDES = "Computed, not tested. Segments slide but do not tip, and their joints do not break."
+_TIPS = (
+    " At {value:,.0f} kg max_overturning_ratio is {ratio:.1f}: a segment would begin to tip, and the answer "
+    "is not to be used unless something keeps it upright."
 )
+_STANDS = " At {value:,.0f} kg max_overturning_ratio is {ratio:.2f}: no segment would begin to tip."
 
 _YIELDS = (
     "Computed, not tested. Tubes do not buckle or tear, whatever their D/t, and have the yield stress that "
@@ -250,7 +253,9 @@ def least_segment_mass(
         outcomes=(*CONTAINED, "passed") if barrier.is_pinned else CONTAINED,
     )
     effort = Effort(points, resolution, draws, executor, progress)
-    return search_limit(simulation, question, masses, effort)
+    found = search_limit(simulation, question, masses, effort)
+    found.caution += _of_tipping(simulation, question, found.value, executor)
+    return found
 
 
 @checked
@@ -311,6 +316,23 @@ def least_tube_thickness(
     )
     effort = Effort(points, resolution, draws, executor, progress)
     return search_limit(simulation, question, thicknesses, effort)
+
+
+def _of_tipping(simulation: Simulation, question: Question, value: float, executor: Any) -> str:
+    """Return how far beyond tipping the segments are at a mass, the worst of all offsets."""
+    name = "max_overturning_ratio"
+    study = run_study(
+        simulation,
+        (question.parameter, "impact_offset"),
+        [(question.of_value(value), offset) for offset in question.offsets(value)],
+        metrics=[name],
+        executor=executor,
+        progress=False,
+    )
+    ratio = float(study[name].max())
+    if math.isnan(ratio):
+        return ""  # without gravity nothing holds a segment down
+    return (_TIPS if ratio > 1.0 else _STANDS).format(value=value, ratio=ratio)
 
 
 def _barrier(simulation: Simulation) -> Barrier:

@@ -1,0 +1,134 @@
+"""Cautions about ratings: what the model leaves out that bears on a verdict."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import units
+from ..barrier.barrier import Barrier
+from ..barrier.kinds import Jersey
+from .vehicles import HEAVY_KG
+
+if TYPE_CHECKING:
+    from ..result import Result
+    from .roadside import RoadsideStandard, RoadsideTest
+
+__all__ = ["level_caution", "model_caution", "roadside_lines", "tipping_lines"]
+
+_BODY = (
+    "Indicative: computed, not tested. The vehicle is one rigid body, or two, with a crushable skin: a load "
+    "bed is fixed to the frame unless it was let go, the engine can not stop before the cab, wheels stay on."
+)
+_RIGID = (
+    "Barriers that are modelled as rigid do not give way, so that tests read more penetration and deflection."
+)
+_FREE = "Segments slide and turn, but do not tip or break."
+_YIELDING = "Posts yield at the ground, but do not buckle or tear."
+_LIMITS = (
+    "Limits and tolerances are those that are commonly reported of the standard: check them in its text."
+)
+
+_TIPS = (
+    "The overturning moment of a segment is {ratio:.1f} times its restoring one: it would begin to tip, "
+    "which is not computed. Containment, penetration, widths and occupant risk hold for segments that stay "
+    "upright."
+)
+_ROLLS_LITTLE = (
+    "Springs and camber thrust are estimates: computed vehicles may roll too little. The 10000S overturns at "
+    "a New Jersey barrier of 0.81 m, as published. It stays upright at 0.91 m and 15 deg, as commonly "
+    "reported; at 16 deg it tips late. A heavy vehicle that is computed upright may roll over in a test."
+)
+_TANK = (
+    "Test 6-12 asks for a tractor with a tank trailer. A van trailer in its place, as the package has it, "
+    "rolls otherwise, and meets tall barriers with its box."
+)
+_LOW = (
+    "The barrier ends {top:.2f} m above the ground; at least {least:.2f} m is commonly reported for {level} "
+    "({inches:g} in{older}), of AASHTO LRFD section 13 and MASH: check the text. A vehicle that is computed "
+    "upright at a lower barrier may go over it in a test."
+)
+_SLOPED = (
+    "The barrier has sloped faces. How a light vehicle climbs and rolls there is an estimate: do not choose "
+    "a profile or its height by it."
+)
+_LEAST_INCHES = {"TL-1": 27.0, "TL-2": 27.0, "TL-3": 29.0, "TL-4": 36.0, "TL-5": 42.0, "TL-6": 90.0}
+"""Least height of a rail, commonly reported of AASHTO LRFD section 13 and MASH: check the text.
+
+EN 1317 has none.
+"""
+_OLDER = {"TL-4": "; 32 in by NCHRP 350"}
+_ROUNDED = 0.01  # m; heights are given in whole centimetres, as 0.91 m for 36 in
+
+
+def model_caution(barrier: Barrier | None) -> str:
+    """Return what the model leaves out of every rating at a barrier."""
+    if barrier is not None and barrier.stands_free() is not None:
+        return f"{_BODY} {_FREE} {_LIMITS}"
+    if barrier is not None and barrier.yields() is not None:
+        return f"{_BODY} {_YIELDING} {_LIMITS}"
+    return f"{_BODY} {_RIGID} {_LIMITS}"
+
+
+def tipping_lines(result: Result) -> Iterator[str]:
+    """Yield a caution if a free-standing segment would begin to tip."""
+    ratio = float(result.metrics.get("max_overturning_ratio", 0.0))
+    if ratio > 1.0:
+        yield _TIPS.format(ratio=ratio)
+
+
+def roadside_lines(result: Result, standard: RoadsideStandard, test: RoadsideTest) -> Iterator[str]:
+    """Yield what bears on a rating as a test of a roadside barrier."""
+    assert result.scene.barrier is not None  # without one there is no rating
+    yield from _low_lines(result.scene.barrier, standard, test)
+    if test.vehicle.mass >= HEAVY_KG:
+        yield _ROLLS_LITTLE
+    elif _is_sloped(result.scene.barrier):
+        yield _SLOPED
+    if test.vehicle.code == "36000T":
+        yield _TANK
+    yield from tipping_lines(result)
+
+
+def _is_sloped(barrier: Barrier) -> bool:
+    """Whether a barrier is a Jersey barrier whose faces are not upright."""
+    return isinstance(barrier, Jersey) and float(np.ptp(barrier.half_profile()[:, 0])) > 0.0
+
+
+def _low_lines(barrier: Barrier, standard: RoadsideStandard, test: RoadsideTest) -> Iterator[str]:
+    """Yield a caution if the barrier is lower than what is required of the lowest level with this test."""
+    levels = [level for level, tests in standard.levels.items() if test.name in tests]
+    known = [level for level in levels if standard.name == "MASH" and level in _LEAST_INCHES]
+    if not known:
+        return
+    level = min(known, key=lambda one: _LEAST_INCHES[one])
+    inches, top = _LEAST_INCHES[level], barrier._top
+    least = units.inch(inches)
+    if top < least - _ROUNDED:
+        yield _LOW.format(top=top, least=least, level=level, inches=inches, older=_OLDER.get(level, ""))
+
+
+def level_caution(cautions: Mapping[str, str]) -> str:
+    """Return the caution of a level: each sentence once, after the tests that it is about if not of all.
+
+    Parameters
+    ----------
+    cautions
+        Test -> caution of its rating.
+    """
+    tests: dict[str, list[str]] = {}
+    for test, caution in cautions.items():
+        for sentence in dict.fromkeys(re.split(r"(?<=\.) (?=[A-Z])", caution)):
+            tests.setdefault(sentence, []).append(test)
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for sentence, names in tests.items():
+        groups.setdefault(tuple(names), []).append(sentence)
+    common = groups.pop(tuple(cautions), [])
+    own = [
+        f"Test{'s' if len(names) > 1 else ''} {', '.join(names)}: {' '.join(sentences)}"
+        for names, sentences in groups.items()
+    ]
+    return " ".join([*common, *own])

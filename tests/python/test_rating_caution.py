@@ -1,0 +1,94 @@
+"""Cautions of ratings: segments that would tip, low barriers, sloped faces, and what the model is."""
+
+from __future__ import annotations
+
+import birm3d
+import pytest
+from birm3d import Barrier, Result, Simulation, Vehicle, units
+from birm3d.assessment.rating_caution import level_caution, model_caution
+
+
+@pytest.mark.parametrize("standard", ["IWA 14-1", "ISO 22343-1", "ASTM F2656", "PAS 68", "SD-STD-02.01"])
+def test_security_standards_tell_of_segments_that_would_tip(heavy_blow: Result, standard: str) -> None:
+    """And no free-standing barrier is said to be rigid and not to give way."""
+    ratio = heavy_blow.metrics["max_overturning_ratio"]
+    code = {"ASTM F2656": "PU", "SD-STD-02.01": "15,000-lb truck"}.get(standard, "N1G")
+    caution = birm3d.rate(heavy_blow, standard, vehicle_class=code).caution
+    assert f"segment is {ratio:.1f} times its restoring one: it would begin to tip" in caution
+    assert "modelled as rigid" not in caution
+    assert "do not tip or break" in caution
+
+
+@pytest.fixture(scope="module")
+def heavy_blow() -> Result:
+    barrier = Barrier.jersey(length=60.0, segments=15, free_standing=True)
+    result = Simulation(Vehicle.preset("pickup_4x4_2500", mesh_density=0.1), barrier, 13.33).run()
+    assert result.metrics["max_overturning_ratio"] > 2.0
+    return result
+
+
+def test_what_the_model_says_of_a_barrier() -> None:
+    tubes = Barrier.bollards(count=3, diameter=0.2, wall_thickness=0.01, yield_stress=3e8)
+    rigid = "Barriers that are modelled as rigid do not give way"
+    free = Barrier.jersey(length=30.0, segments=5, free_standing=True)
+    for barrier, told in ((Barrier.bollards(), True), (None, True), (tubes, False), (free, False)):
+        text = model_caution(barrier)
+        assert (rigid in text) is told
+        assert text.startswith("Indicative: computed, not tested.")
+    assert "Posts yield" in model_caution(tubes)
+
+
+def test_the_caution_of_a_level_says_which_tests_it_is_about() -> None:
+    text = level_caution({"a": "All. Of two. Of a.", "b": "All. Of two.", "c": "All. Of c 1.2 m. Long."})
+    assert text == "All. Tests a, b: Of two. Test a: Of a. Test c: Of c 1.2 m. Long."
+
+
+@pytest.fixture(scope="module")
+def car() -> Vehicle:
+    return Vehicle.preset("mash_1100c", mesh_density=0.1)
+
+
+def rated(vehicle: Vehicle, barrier: Barrier, standard: str, angle: float = 25.0) -> str:
+    result = Simulation(vehicle, barrier, units.km_h(100.0), angle).run()
+    return birm3d.rate(result, standard, vehicle_class=None).caution
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+@pytest.mark.parametrize(
+    ("test", "inches", "metres"),
+    [
+        ("1-10", 27, "0.69"),
+        ("2-10", 27, "0.69"),
+        ("3-10", 29, "0.74"),
+        ("4-10", 36, "0.91"),
+        ("5-10", 42, "1.07"),
+        ("6-10", 90, "2.29"),
+    ],
+)
+def test_a_barrier_below_the_least_height_of_its_level_is_told(
+    car: Vehicle, test: str, inches: int, metres: str
+) -> None:
+    for lower, told in ((0.02, True), (0.005, False), (-0.05, False)):
+        height = inches * 0.0254 - lower
+        caution = rated(car, Barrier.rigid_wall(height=height), f"MASH {test}")
+        text = f"The barrier ends {height:.2f} m above the ground; at least {metres} m is commonly reported "
+        assert (f"{text}for TL-{test[0]} ({inches} in" in caution) is told
+        assert ("AASHTO" in caution) is told
+        assert ("32 in by NCHRP 350" in caution) is (told and inches == 36)
+
+
+def test_no_least_height_where_none_is_known(car: Vehicle) -> None:
+    small = car.scaled_to(900.0)
+    assert "AASHTO" not in rated(small, Barrier.rigid_wall(height=0.6), "EN 1317 TB11", 20.0)
+    assert "AASHTO" not in rated(car, Barrier.rigid_wall(), "MASH 6-10")  # without an end above
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_roll_of_light_vehicles_at_sloped_faces_is_called_an_estimate(car: Vehicle) -> None:
+    told = "do not choose a profile"
+    truck = Vehicle.preset("mash_10000s", mesh_density=0.1)
+    straight = Barrier.jersey(profile=((0.3, 0.0), (0.3, 1.0)))
+    for profile in ("new_jersey", "f_shape", "single_slope"):
+        assert told in rated(car, Barrier.jersey(profile=profile, height=0.81), "MASH 3-10")
+    for vehicle, barrier in ((car, Barrier.rigid_wall()), (car, straight), (truck, Barrier.jersey())):
+        assert told not in rated(vehicle, barrier, "MASH")
