@@ -43,15 +43,15 @@ BARRIERS = {
 
 def test_the_impulse_ends_when_the_vehicle_has_left() -> None:
     """A later contact is another event: it is said, and adds nothing."""
-    vehicle = Vehicle.preset("van_3500", mesh_density=0.2)
-    result = Simulation(vehicle, Barrier.jersey(), 20.0, 25.0).run()
+    vehicle = Vehicle.preset("mash_10000s", mesh_density=0.2)
+    result = Simulation(vehicle, Barrier.jersey(height=1.07), 22.0, 20.0).run()
     assert result.metrics["later_contacts"] == 1.0
     loads = birm3d.design_load(result, natural_period=0.05)
     dt, force = result.scene.settings.output_interval, result.barrier_force[:, 0]
     first = result.time <= result.metrics["time_of_separation"] + dt
     counted, whole = -dt * force[first][1:].sum(), -dt * force[1:].sum()
     assert loads.impulse.sum() == pytest.approx(counted, rel=1e-9)
-    assert whole > 1.1 * counted  # 11 % more
+    assert whole > 1.1 * counted  # 30 % more
     assert "touches the barrier again after it has left: the impulse does not count that" in loads.summary()
 
 

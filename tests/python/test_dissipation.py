@@ -46,6 +46,7 @@ def test_elastic_impacts_at_the_end_of_a_thin_plate_make_no_energy(
     assert run.metrics["energy_residual"] < 1e-4
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning")
 @pytest.mark.parametrize(
     ("name", "height", "speed", "angle", "yaw", "roll", "restitution", "friction"),
     [

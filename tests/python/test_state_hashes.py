@@ -76,7 +76,7 @@ HASHES = {
     "semi, wall": "fe6e7278f891583e",
     "truck, pole of triangles": "9351a79d842abf38",
     "free-standing": "de187dfe9011bf6e",
-    "minivan on its side": "3131f44e1455b051",
+    "minivan on its side": "393c2211dbd5592e",
     "car, corner of a planter": "13f6987ddde5211e",
     "pickup, end of a wall": "d3e2c21139b114fb",
     "truck, bollards that yield": "698d0a7ab05b6121",
