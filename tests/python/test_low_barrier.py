@@ -8,7 +8,6 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, LowBarrierWarning, Simulation, Vehicle, units
-from birm3d.vehicle.front_height import strong_height
 from birm3d.vehicle.test_bodies import laboratory_block
 
 TRUCK = Vehicle.preset("cargo_truck", mesh_density=0.3)
@@ -28,7 +27,7 @@ def test_the_height_of_a_front_is_found_from_its_stresses() -> None:
     """Recomputed node by node: what the front takes up in its first 0.3 m, below and above the height."""
     for name in ("passenger_car", "pickup", "cargo_truck", "semi_truck"):
         unit = Vehicle.preset(name, mesh_density=0.3).units[0]
-        height = strong_height(unit)
+        height = unit._strong_height
         assert height is not None
         total, below = 0.0, {-ROW: 0.0, ROW: 0.0}
         depths = np.linspace(0.0, 0.3, 601)
@@ -79,7 +78,7 @@ def test_a_barrier_on_a_step_is_as_high_as_it_stands() -> None:
 
 def test_vehicles_from_arrays_have_no_zones_to_judge() -> None:
     block = laboratory_block(24, k_initial=1e6, k_unloading=1e7)
-    assert strong_height(block) is None
+    assert block._strong_height is None
 
 
 @pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning")

@@ -98,7 +98,7 @@ Wrench skid_friction(const UnitOnTires& on, std::span<const double> normal_impul
 }
 
 // Tilts from which a tyre comes to lie on its side wall, and from which it has no camber thrust (rad). Estimates.
-constexpr double leaves_tread = 0.785, on_side_wall = 1.05;
+constexpr double leaves_tread = 0.873, on_side_wall = 1.134;
 
 double camber_of(double tilt) {
     const double on_tread = (on_side_wall - std::abs(tilt)) / (on_side_wall - leaves_tread);

@@ -8,7 +8,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from ..base.complaints import Complaint
-from ..vehicle.front_height import strong_height
 
 if TYPE_CHECKING:
     from .. import _core
@@ -67,7 +66,7 @@ def _heights(scene: Scene) -> tuple[float, float] | None:
     """Return the height of most of a front that comes first, and of a barrier that is lower [m]."""
     if scene.barrier is None or not _front_first(scene):
         return None
-    height = strong_height(scene.vehicle.units[0])
+    height = scene.vehicle.units[0]._strong_height
     if height is None:
         return None
     top = scene.barrier._top

@@ -15,7 +15,6 @@ from ..base.arguments import checked
 from ..result.low_barrier import LowBarrierWarning
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
-from ..vehicle.front_height import strong_height
 from .limit_search import CONTAINED, Effort, Limit, Question, search_limit
 from .runner import run_study
 
@@ -172,7 +171,7 @@ def least_height(
         )
     if isinstance(barrier, Jersey) and not isinstance(barrier.profile, str):
         raise ValueError("simulation must have a barrier of a named profile, got one of points")
-    height = strong_height(simulation.scene.vehicle.units[0])
+    height = simulation.scene.vehicle.units[0]._strong_height
     question = Question(
         name="height",
         argument="heights",

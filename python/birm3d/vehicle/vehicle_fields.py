@@ -129,6 +129,11 @@ class VehicleFields:
         return () if self._file is None else self._file.assumptions
 
     @property
+    def _strong_height(self) -> float | None:
+        """See :mod:`birm3d.vehicle.front_height`; ``None`` of a vehicle made from arrays."""
+        return None if self._shape is None else self._shape.strong_height(self.zones)
+
+    @property
     def is_skin(self) -> npt.NDArray[np.bool_]:
         """Which nodes are tied to the rigid body by their first truss, shape (n,)."""
         return (self.wheel_of_node < 0) & (self.along_of_node < 0)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from .. import _core
 from .along_panel import build_along
-from .front_height import strong_height_of_shape
+from .front_height import strong_height
 from .mesher import build_mesh
 from .tire_nodes import build_tread, zones_of_wheels
 from .vehicle_file import VehicleFile
@@ -137,10 +137,15 @@ class VehicleShape:
         return known
 
     def strong_height(self, zones: Mapping[str, Zone]) -> float | None:
-        """Return :func:`birm3d.vehicle.front_height.strong_height_of_shape`; the last few are remembered."""
+        """Return :func:`birm3d.vehicle.front_height.strong_height`; the last few are remembered."""
         key = tuple(zones.items())
         if key not in self._heights:
-            self._heights[key] = strong_height_of_shape(self, zones)
+            skin = (self.wheel_of_node < 0) & (self.along_of_node < 0)
+            inwards = self.anchors[skin] - self.nodes[skin]
+            laws = tuple(zones.values())
+            self._heights[key] = strong_height(
+                self.nodes[skin], inwards, self.area[skin], self.zone_of_node[skin], laws
+            )
             _forget_first(self._heights, _LAWS)
         return self._heights[key]
 
