@@ -263,6 +263,15 @@ def test_a_long_chain_costs_little_more_than_a_short_one(car: Vehicle) -> None:
     assert long < 15.0 * short
 
 
+@pytest.mark.parametrize("segments", [40, 300])
+def test_a_redirected_car_has_left_before_it_passes_the_end_of_the_chain(car: Vehicle, segments: int) -> None:
+    chain = Barrier.jersey(length=3.0 * segments, segments=segments, free_standing=FreeStanding())
+    result = Simulation(car, chain, 25.0, 15.0).run()
+    assert (result.outcome, result.end_reason) == ("redirected", "separated")
+    # It ends at rest of the segments, long before the car, at 25 m/s, has passed half the chain.
+    assert result.time[-1] < 0.9 * 1.5 * segments / 25.0
+
+
 def test_control_c_stops_a_run_at_once() -> None:
     """Steps of a fine vehicle take long: between looks for signals there is time, not a number of steps."""
     vehicle = scenes.laboratory_block(200_000, k_initial=1e4, k_unloading=1e4)

@@ -80,6 +80,69 @@ BodyState between(const BodyState& a, const BodyState& b, double fraction) {
     return body;
 }
 
+// How a unit's mass centre lies to an element or a chain.
+struct Departure {
+    double distance;  // m
+    double away;      // m/s
+};
+
+// Where the unit moves forward it must be out of reach; else it suffices that it moves away faster than any rotation can bring
+// a point of it back.
+bool departs(const Scene& scene, const Unit& unit, const BodyState& body, const Departure& departure) {
+    const bool forward = body.velocity.dot(scene.towards()) > 0.0;
+    const double rotation_speed = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
+    const bool outruns = !forward && departure.away >= rotation_speed;
+    return departure.away > 0.0 && (outruns || departure.distance > unit.trusses.reach);
+}
+
+// Away from every element, or from the box of all that is joined to it.
+bool has_left_elements(const Scene& scene, const State& state, std::size_t u) {
+    const Unit& unit = scene.vehicle->units[u];
+    const BodyState& body = state.units[u].body;
+    for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
+        const Obstacle& element = scene.obstacles[i];
+        if (element.structure != i) continue;
+        const Pose pose = pose_of(scene, i, state);
+        const Placement in_shape = placement(pose, body);
+        const Vec3 from = from_hull(element.shape, box_of_structure(scene, i), in_shape.position);
+        const double distance = from.norm();
+        if (!(distance > 0.0)) return false;
+        const Vec3 direction = from / distance;
+        double away = (pose.rotation.transpose() * body.velocity).dot(from) / distance;
+        if (i < state.moving_elements.size()) {
+            const Vec3 own_velocity = pose.rotation.transpose() * state.moving_elements[i].velocity;
+            away -= std::max(0.0, own_velocity.dot(direction)) +
+                    fastest_point(scene.barrier->moving_elements[i], state.moving_elements[i]) -
+                    own_velocity.norm();
+        }
+        if (!departs(scene, unit, body, {distance, away})) return false;
+    }
+    return true;
+}
+
+// Away from the box around a free-standing chain as it lies now. A vehicle that was redirected still nears its far segments.
+bool has_left_chain(const Scene& scene, const State& state, std::size_t u) {
+    if (!scene.slides()) return false;
+    const Mat3& axes = scene.obstacles.front().rotation;
+    Eigen::AlignedBox3d chain;
+    for (std::size_t i = 0; i < state.moving_elements.size(); ++i) {
+        const Pose pose = pose_of(scene, i, state);
+        const Box box = bounds(scene.obstacles[i].shape);
+        const Mat3 rotation = axes.transpose() * pose.rotation;
+        const Vec3 center = axes.transpose() * pose.position + rotation * box.center;
+        const Vec3 half = rotation.cwiseAbs() * box.half;
+        chain.extend(Eigen::AlignedBox3d(center - half, center + half));
+    }
+    const BodyState& body = state.units[u].body;
+    const Vec3 position = axes.transpose() * body.position;
+    const Vec3 from = position - position.cwiseMax(chain.min()).cwiseMin(chain.max());
+    const double distance = from.norm();
+    if (!(distance > 0.0)) return false;
+    const double away = (axes.transpose() * body.velocity).dot(from) / distance;
+    return departs(scene, scene.vehicle->units[u], body,
+                   {distance, away - fastest_moving_element(scene, state)});
+}
+
 }  // namespace
 
 bool touches(const State& state) {
@@ -87,35 +150,9 @@ bool touches(const State& state) {
                        [](const UnitState& unit) { return unit.skin.normal_force > 0.0; });
 }
 
-// Away from every element. Where it moves forward it must also be out of reach; else it suffices to move away faster than any
-// rotation can bring a point back.
 bool has_left(const Scene& scene, const State& state) {
-    const Vec3 towards = scene.towards();
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const Unit& unit = scene.vehicle->units[u];
-        const BodyState& body = state.units[u].body;
-        const bool forward = body.velocity.dot(towards) > 0.0;
-        const double rotation_speed = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
-        for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
-            const Obstacle& element = scene.obstacles[i];
-            if (element.structure != i) continue;
-            const Pose pose = pose_of(scene, i, state);
-            const Placement in_shape = placement(pose, body);
-            const Vec3 from = from_hull(element.shape, box_of_structure(scene, i), in_shape.position);
-            const double distance = from.norm();
-            if (!(distance > 0.0)) return false;
-            const Vec3 direction = from / distance;
-            double away = (pose.rotation.transpose() * body.velocity).dot(from) / distance;
-            if (i < state.moving_elements.size()) {
-                const Vec3 own_velocity = pose.rotation.transpose() * state.moving_elements[i].velocity;
-                away -= std::max(0.0, own_velocity.dot(direction)) +
-                        fastest_point(scene.barrier->moving_elements[i], state.moving_elements[i]) -
-                        own_velocity.norm();
-            }
-            const bool outruns = !forward && away >= rotation_speed;
-            if (!(away > 0.0 && (outruns || distance > unit.trusses.reach))) return false;
-        }
-    }
+    for (std::size_t u = 0; u < state.units.size(); ++u)
+        if (!has_left_chain(scene, state, u) && !has_left_elements(scene, state, u)) return false;
     return true;
 }
 

@@ -10,10 +10,10 @@ namespace birm3d {
 // Does any node push?
 bool touches(const State& state);
 
-// Is the vehicle moving away from every element, either out of its reach or faster than any rotation could bring a
-// point back? On a straight path a body that recedes goes on receding. It must recede from a sliding segment both as
-// that moves now and as it will come to rest. A vehicle that passes the barrier must be out of reach, as its rear
-// still has to pass the element.
+// Is the vehicle moving away from every element, or from the box around a free-standing chain? It must be out of reach, or
+// faster than any rotation could bring a point back. On a straight path a body that recedes goes on receding. It must recede
+// from a sliding segment both as that moves now and as it will come to rest. A vehicle that passes the barrier must be out of
+// reach, as its rear still has to pass the element.
 bool has_left(const Scene& scene, const State& state);
 
 // Has the vehicle left the barrier for good, with no wheel rising and all moving elements at rest?
