@@ -1,4 +1,4 @@
-"""The architecture page says how many files a new part touches: only those that name an example of it."""
+"""The architecture page: how many files a new part touches, and what each file of the contact layer is for."""
 
 import re
 from pathlib import Path
@@ -48,3 +48,10 @@ def test_a_part_is_named_in_few_files(part: str) -> None:
     section = page.split(f"### {part[0].upper()}{part[1:]}\n")[1].split("\n### ")[0]
     for file in expected:
         assert f"(../../{file}" in section
+
+
+def test_each_file_of_the_contact_layer_is_on_the_architecture_page() -> None:
+    page = (ROOT / "docs/pages/architecture.md").read_text(encoding="utf-8")
+    files = sorted(path.name for path in (ROOT / "cpp/src/contact").glob("*.cpp"))
+    assert files
+    assert [name for name in files if f"(../../cpp/src/contact/{name}" not in page] == []

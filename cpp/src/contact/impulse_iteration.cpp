@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "birm3d/base/tolerances.hpp"
+#include "contact/base_reactions.hpp"
 #include "contact/post_tilting.hpp"
 #include "contact/rigid_friction.hpp"
-#include "contact/segment_sliding.hpp"
 #include "kernels/integrate.hpp"
 #include "kernels/joints.hpp"
 #include "scene/bodies.hpp"

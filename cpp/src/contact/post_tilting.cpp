@@ -1,6 +1,6 @@
 #include "contact/post_tilting.hpp"
 
-#include "contact/segment_sliding.hpp"
+#include "contact/base_reactions.hpp"
 #include "scene/bodies.hpp"
 
 namespace birm3d {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "birm3d/base/tolerances.hpp"
-#include "contact/segment_sliding.hpp"
+#include "contact/base_reactions.hpp"
 #include "kernels/core_friction.hpp"
 #include "kernels/detect.hpp"
 #include "kernels/detect_core.hpp"

@@ -1,4 +1,4 @@
-#include "contact/segment_sliding.hpp"
+#include "contact/base_reactions.hpp"
 
 #include <algorithm>
 
