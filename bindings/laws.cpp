@@ -1,7 +1,5 @@
 #include <pybind11/stl.h>
 
-#include <limits>
-
 #include "arrays.hpp"
 #include "birm3d/model/truss_law.hpp"
 #include "kernels/impulse.hpp"
@@ -24,7 +22,7 @@ TrussCurve completed(TrussCurve curve, double elastic_recovery, double tail_dept
     return curve;
 }
 
-constexpr double none = std::numeric_limits<double>::infinity();
+constexpr double none = birm3d::infinity;
 
 }  // namespace
 

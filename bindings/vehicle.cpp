@@ -50,6 +50,7 @@ std::vector<Wheel> discs(const InputArray& wheels) {
 std::vector<SlideKnot> slide_knots(const InputArray& slide) {
     if (slide.ndim() != 2 || slide.shape(1) != 2) refuse("slide shape", "(n, 2)", shape_text(slide));
     std::vector<SlideKnot> knots;
+    knots.reserve(static_cast<std::size_t>(slide.shape(0)));
     for (py::ssize_t i = 0; i < slide.shape(0); ++i)
         knots.push_back({slide.at(i, 0), slide.at(i, 1)});
     return knots;

@@ -59,7 +59,7 @@ def test_low_barriers_that_contain_are_warned_of(barrier: Barrier, warned: bool)
     assert len(told) == warned
     if warned:
         assert "height must be at least 0.78 m" in told[0]
-        assert "below which two thirds of the front resist (Cargo truck)" in told[0]
+        assert "more than a third of the front's resistance (Cargo truck) stands above" in told[0]
 
 
 @pytest.mark.parametrize("scene", [{"impact_angle": 20.0}, {"impact_yaw": 90.0}, {"impact_roll": 180.0}])
@@ -85,7 +85,7 @@ def test_vehicles_from_arrays_have_no_zones_to_judge() -> None:
 def test_verdicts_loads_and_reports_say_it() -> None:
     truck = Vehicle.preset("cargo_truck")
     result = Simulation(truck, Barrier.bollards(count=3, height=0.5), units.mph(50)).run()
-    said = "A third of what the front resists with stands above 0.69 m."
+    said = "A third of the front's resistance stands above 0.69 m."
     assert said in birm3d.rate(result, "ASTM F2656").caution
     assert said in result.report()
     high = Simulation(truck, Barrier.bollards(count=3), units.mph(50)).run()
@@ -96,7 +96,7 @@ def test_verdicts_loads_and_reports_say_it() -> None:
 
 def test_studies_name_their_rows() -> None:
     crash = Simulation(TRUCK, Barrier.bollards(count=3), SPEED)
-    with pytest.warns(LowBarrierWarning, match=r"may ride over \(row 0\)"):
+    with pytest.warns(LowBarrierWarning, match=r"may ride over it \(row 0\)"):
         birm3d.sweep(crash, {"barrier.height": [0.5, 1.0]}, metrics=["max_pitch"])
 
 

@@ -1,4 +1,4 @@
-"""The architecture page: how many files a new part touches, and what each file of the contact layer is for."""
+"""The architecture page: which files a new part touches, and what the files of the contact layer are for."""
 
 import re
 from pathlib import Path

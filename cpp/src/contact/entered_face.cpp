@@ -1,7 +1,5 @@
 #include "contact/entered_face.hpp"
 
-#include <limits>
-
 #include "birm3d/base/tolerances.hpp"
 
 namespace birm3d {
@@ -19,7 +17,7 @@ constexpr double shallow = 2e-3;
 
 struct At {
     std::size_t reachable_index = 0;
-    Nearest nearest{std::numeric_limits<double>::infinity(), Vec3::UnitX()};  // own axes
+    Nearest nearest{infinity, Vec3::UnitX()};  // own axes
 };
 
 // The nearest surface of all to a place. `point` gives the place in each obstacle's own axes.

@@ -8,7 +8,7 @@ namespace birm3d {
 // What a kick needs to know beside the state.
 struct KickedBy {
     const Column&
-        pressed;  // (moving elements) impulse of all other forces that presses them on the ground (N s)
+        pressed;  // (free-standing segments) impulse on the ground by all forces but rigid contacts (N s)
     std::span<const Twist> at_end;  // (bodies) their motions at that end of the step (see TireMotion)
     std::span<const Twist> from;    // (bodies) their motions before this kick
     double time = 0.0;              // for which the loads of springs and dampers act (s)

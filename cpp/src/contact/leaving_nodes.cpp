@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 
 #include "base/block_loop.hpp"
@@ -58,7 +57,7 @@ void add_start(const ContactPass& pass, std::size_t b, std::size_t k, std::size_
 // `free`: no surface but these indentations holds a node.
 void find_start(const ContactPass& pass, std::size_t b, StartOfStep& start) {
     for (BlockColumn* column : {&start.faces.gap, &start.rank, &start.free})
-        column->fill(std::numeric_limits<double>::infinity());
+        column->fill(infinity);
     for (BlockColumn* column : {&start.faces.per_force, &start.nothing, &start.any_facing})
         column->fill(0.0);
     start.contact.set_normal(Vec3::UnitX());

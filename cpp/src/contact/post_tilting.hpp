@@ -1,5 +1,5 @@
-// Posts that yield: rigid until the moment of the loads about the centre of rotation exceeds the plastic one.
-// That then resists the tilting.
+// Posts that yield. A post stands still until the moment of its loads about its centre of rotation exceeds the plastic moment.
+// From then on the plastic moment resists the tilting.
 // Like Coulomb friction it is a limited impulse that never reverses the motion, found at the end of each half kick.
 //
 // Where the rigid core meets a post, the impulse depends on whether the post stands still. One that does is fixed for the

@@ -50,9 +50,10 @@ struct Impact {
 // Impulses of rigid contacts and joints at one end of the drift.
 struct ContactKick {
     std::vector<RigidContact> contacts;
-    std::vector<Wrench> on_ground;   // (units) friction impulses of tyres
-    std::vector<Wrench> on_cores;    // (bodies) friction impulses of bottomed-out trusses
-    std::vector<Wrench> on_base;     // (moving elements) friction impulses of the ground
+    std::vector<Wrench> on_ground;  // (units) friction impulses of tyres
+    std::vector<Wrench> on_cores;   // (bodies) friction impulses of bottomed-out trusses
+    std::vector<Wrench>
+        on_base;  // (moving elements) impulses of ground friction on segments, of the plastic moment on posts
     std::vector<Wrench> on_pins;     // (moving elements) of the pins to their neighbours
     std::vector<char> rolls_freely;  // (units) is the friction of its tyres left out? Empty: of no unit
 };
@@ -75,7 +76,7 @@ struct KickMemory {
     std::vector<Column> tire;
     Column last;
     std::vector<Wrench> on_cores, on_base;
-    // Of moving elements.
+    // Of free-standing segments.
     std::vector<PinnedSlab> slabs;
     std::vector<SlabPin> pins;
     SlabChain chain;

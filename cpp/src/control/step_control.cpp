@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "birm3d/base/tolerances.hpp"
-#include "control/balance_opening.hpp"
 #include "control/end_of_event.hpp"
+#include "control/energy_error.hpp"
 #include "control/step_limits.hpp"
 #include "kernels/integrate.hpp"
 #include "scene/bodies.hpp"
@@ -258,7 +258,8 @@ double shorter_step(const Scene& scene, const State& from, const Trial& tried, S
     double fraction = 1.0;
     if (search.error > allowed) fraction = std::max(0.2, 0.9 * std::sqrt(allowed / search.error));
     if (fall_of_crush(from, tried) > tolerance::greatest_fall) fraction = std::min(fraction, 0.5);
-    if (opens_balance(scene, from, tried, search.opening)) fraction = std::min(fraction, 0.5);
+    if (has_reducible_energy_error(scene, from, tried, search.energy_error))
+        fraction = std::min(fraction, 0.5);
     if (fraction < 1.0 && dt > tolerance::jump_resolution)
         target = std::min(target, std::max(fraction * dt, tolerance::jump_resolution));
     double shorter = std::min(target < dt ? quantize_step(target) : infinity,

@@ -1,8 +1,6 @@
 // Adaptive step control: whether a tried step is accepted, and how long the next one is.
 #pragma once
 
-#include <limits>
-
 #include "birm3d/scene/scene.hpp"
 #include "contact/trial.hpp"
 
@@ -10,14 +8,12 @@ namespace birm3d {
 
 // The search for one step.
 struct StepSearch {
-    double first = 0.0;     // the first to be tried (s)
-    double approach = 0.0;  // separation speed of the nodes that push at the start (m/s)
-    double error = 0.0;     // estimate of the step tried last, reversals of single nodes included (m/s)
-    bool lands = false;     // is the landing on the barrier known?
-    double pressing =
-        std::numeric_limits<double>::infinity();  // first step that can be taken when contact begins (s)
-    double opening =
-        std::numeric_limits<double>::infinity();  // of the energy balance in the step tried last (J)
+    double first = 0.0;          // the first to be tried (s)
+    double approach = 0.0;       // separation speed of the nodes that push at the start (m/s)
+    double error = 0.0;          // estimate of the step tried last, reversals of single nodes included (m/s)
+    bool lands = false;          // is the landing on the barrier known?
+    double pressing = infinity;  // first step that can be taken when contact begins (s)
+    double energy_error = infinity;  // see has_reducible_energy_error()
     double cut = 0.0;  // length that an impact cut off the step (s); the next step is not shortened for it
 };
 

@@ -28,8 +28,9 @@ struct IndentationNumbers {
     bool is_face = false;
     double top_rate;  // of `top`, for each unit of change of the axis's part along e
     double upward;    // l of the body's upward axis
-    double
-        lying;  // added to how far the post reaches over the panel's lower edge: 0, or much where that is no lower edge (m)
+    // Added to the overlap of post and panel in height: zero, or a great length where the vehicle is tilted so far that the
+    // panel has no lower edge (m).
+    double edge_allowance;
     double tilt;             // e of the axis for each unit of l
     double radius, stretch;  // the post's, and that of its section with a plane of e and w over it
     double surface;          // into, of the outermost node of the panel

@@ -60,7 +60,7 @@ void nearest_of_mesh(const TriangleMesh& mesh, const Placement& now, const Place
     std::size_t hint = 0;
     mesh.nearest(middle, hint);
     NearestTriangles best;
-    begin(std::numeric_limits<double>::infinity(), best);
+    begin(infinity, best);
     double most = ask_triangle(data.triangles[hint].plain, static_cast<double>(hint), own, best);
     std::size_t asked = 1;
     data.tree.near(low, high, most, [&](std::size_t i) {

@@ -1,7 +1,6 @@
 // Prisms: edges of the profile that can be nearest to no node of the block are left out.
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <vector>
 
 #include "geometry/prism_range.hpp"
@@ -71,7 +70,7 @@ class EdgesInView {
   private:
     const std::vector<PrismEdge>& edges_;
     bool all_;
-    double most_ = std::numeric_limits<double>::infinity();
+    double most_ = infinity;
     std::array<double, SomeEdges::most> least_;
     SomeEdges near_, splitting_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 
@@ -35,7 +34,7 @@ TireNodeContact tire_node_contact(const TireNode& node, std::size_t near, const 
 double free_rolling_speed(double full_speed, std::span<const TireNodeContact> wheel) {
     // The torque of one node is zero at the q at which it slides along its spoke, and it grows with q. So the zero of
     // the total torque lies between the least and the greatest of these q.
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    double low = infinity, high = -low;
     for (const TireNodeContact& node : wheel) {
         const double square = node.rolling.squaredNorm();
         if (!(square > no_rolling) || !(node.normal_force > 0.0)) continue;

@@ -79,7 +79,7 @@ void Indentation::set_axes(const Vec3& foot, const Vec3& axis_up, const Panel& p
     surface = (panel.box.center - foot).dot(e) - panel.box.half.dot(e.cwiseAbs());
     per_reach = 1.0 / length;
     upward = lz;
-    lying = upward > least_upright ? 0.0 : no_edge;
+    edge_allowance = upward > least_upright ? 0.0 : no_edge;
 }
 
 void Indentation::set_outline(const Box& outline) {
@@ -258,7 +258,7 @@ double gap_of(const Indentation& indentation, const TrussBlockState& nodes, cons
               std::size_t panel) {
     return simd.find_indentation_gap(
         indentation, {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(),
-                      trusses.below.data(), trusses.panel.data(), static_cast<double>(panel)});
+                      trusses.height_above_edge.data(), trusses.panel.data(), static_cast<double>(panel)});
 }
 
 void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
@@ -267,7 +267,7 @@ void follow_indentation(const Indentation& indentation, const Indentation& then,
                         BlockContact& contact, BlockColumn& rank, BlockColumn& follows) {
     simd.find_indentation(
         indentation, then,
-        {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), trusses.below.data(),
+        {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), trusses.height_above_edge.data(),
          trusses.panel.data(), static_cast<double>(panel)},
         {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(), faces.bz.data(),
          contact.nx.data(), contact.ny.data(), contact.nz.data(), contact.px.data(), contact.py.data(),

@@ -37,7 +37,7 @@ struct NodePlace {
     Packet post_l;   // along, of the place of the post at the node's height: the top, for nodes above it
     Packet deepest;  // into, of the middle of the post there
     Packet
-        met;  // how far the panel's lower edge below the node is below the top: above 0 if the panel meets the post there
+        overlap;  // height of the top above the panel's lower edge at the node; the panel meets the post where it is > 0
 };
 BIRM3D_INLINE NodePlace place_of(const IndentationNumbers& indentation, const PanelNodes& nodes,
                                  std::size_t i) {
@@ -51,8 +51,9 @@ BIRM3D_INLINE NodePlace place_of(const IndentationNumbers& indentation, const Pa
     place.post_l = lesser(place.l, indentation.top + indentation.top_slope * place.w);
     place.deepest = indentation.tilt * place.post_l +
                     (indentation.stretch * indentation.radius + indentation.face_slope * place.w);
-    const Packet lower_edge = place.l - indentation.upward * Packet::load(nodes.below + i);
-    place.met = indentation.top + indentation.top_slope * place.w - lower_edge + indentation.lying;
+    const Packet lower_edge = place.l - indentation.upward * Packet::load(nodes.height_above_edge + i);
+    place.overlap =
+        indentation.top + indentation.top_slope * place.w - lower_edge + indentation.edge_allowance;
     return place;
 }
 

@@ -88,7 +88,7 @@ BIRM3D_INLINE Packet gap_of_free(const IndentationNumbers& indentation, const Kn
                                  std::size_t i) {
     const Packet zero = 0.0, far = infinitely_far;
     const Packet within = where_above(followed.gap, zero, followed.gap, greater(followed.gap, outward));
-    const Packet reached = where_above(place.met, zero, within, far);
+    const Packet reached = where_above(place.overlap, zero, within, far);
     return where_beside_face(indentation, known, place, followed, far, reached, i);
 }
 
@@ -239,7 +239,7 @@ double find_indentation_gap(const IndentationNumbers& indentation, const PanelNo
     Packet least = infinitely_far;
     for (std::size_t i = 0; i < block_size; i += packet_length) {
         const NodePlace place = place_of(indentation, nodes, i);
-        const Packet zero = 0.0, met = where_above(place.met, zero, find_followed(indentation, place).gap,
+        const Packet zero = 0.0, met = where_above(place.overlap, zero, find_followed(indentation, place).gap,
                                                    infinitely_far);
         const Packet gap = where_drawn(indentation, place, zero, met, infinitely_far);
         least = lesser(least, where_on(nodes, gap, infinitely_far, i));

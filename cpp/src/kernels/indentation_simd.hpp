@@ -47,7 +47,7 @@ inline constexpr double away = 10.0;
 // The nodes of a block that are on one panel.
 struct PanelNodes {
     const double *x, *y, *z, *force;
-    const double* below;  // heights above the panel's lower edge, see TrussBlock (m)
+    const double* height_above_edge;  // see TrussBlock (m)
     const double* panel;
     double number;  // of the panel
 };

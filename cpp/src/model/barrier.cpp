@@ -1,7 +1,6 @@
 #include "birm3d/model/barrier.hpp"
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -105,7 +104,7 @@ Barrier Barrier::wall(double friction, const Vec3& origin, double heading) {
 
 Barrier Barrier::pole(double friction, const Vec3& origin, double heading, double radius) {
     require_positive("radius", radius);
-    const Post post{radius, std::numeric_limits<double>::infinity()};
+    const Post post{radius, infinity};
     return {{{post, Vec3::Zero(), heading}}, friction, origin, heading, {}};
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "birm3d/base/error.hpp"
 #include "geometry/prism_nearest.hpp"
@@ -14,7 +13,7 @@ namespace {
 // Integrals over the part of a profile above z = 0 of 1, x, z, x^2, z^2.
 struct Section {
     double area = 0.0, x = 0.0, z = 0.0, xx = 0.0, zz = 0.0;
-    double toe_low = std::numeric_limits<double>::infinity(),
+    double toe_low = infinity,
            toe_high = -toe_low;  // of its base, along x (m)
 };
 

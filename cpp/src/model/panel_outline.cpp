@@ -44,12 +44,13 @@ std::vector<double> heights_above_edge(const std::vector<Vec3>& nodes, const Vec
         lowest;  // nodes within reach that are lower than all after them, the lowest first
     std::size_t next = 0;
     for (const std::size_t k : order) {
-        for (; next < order.size() && nodes[order[next]][along] <= nodes[k][along] + column_width; ++next) {
+        for (; next < order.size() && nodes[order[next]][along] <= nodes[k][along] + column_half_width;
+             ++next) {
             while (!lowest.empty() && nodes[lowest.back()].z() >= nodes[order[next]].z())
                 lowest.pop_back();
             lowest.push_back(order[next]);
         }
-        while (nodes[lowest.front()][along] < nodes[k][along] - column_width)
+        while (nodes[lowest.front()][along] < nodes[k][along] - column_half_width)
             lowest.pop_front();
         heights[k] = nodes[k].z() - nodes[lowest.front()].z();
     }

@@ -221,7 +221,7 @@ void TrussMesh::find_panels(const TrussInput& input) {
         panel[p].outlines = outlines_of(nodes[p], panel[p].inward);
         const std::vector<double> heights = heights_above_edge(nodes[p], panel[p].inward);
         for (std::size_t k = 0; k < heights.size(); ++k)
-            block.fill()[slots[p][k] / block_size].below[slots[p][k] % block_size] = heights[k];
+            block.fill()[slots[p][k] / block_size].height_above_edge[slots[p][k] % block_size] = heights[k];
     }
 }
 

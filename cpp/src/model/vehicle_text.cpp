@@ -3,7 +3,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -34,7 +33,7 @@ std::optional<double> hexadecimal(std::string_view word) {
     const bool negative = word.starts_with('-');
     if (negative) word.remove_prefix(1);
     const double sign = negative ? -1.0 : 1.0;
-    if (word == "inf") return sign * std::numeric_limits<double>::infinity();
+    if (word == "inf") return sign * infinity;
     if (!word.starts_with("0x")) return {};
     word.remove_prefix(2);
     const std::size_t power = word.find('p');

@@ -1,12 +1,11 @@
 #include <algorithm>
-#include <limits>
 
 #include "birm3d/record/event.hpp"
 
 namespace birm3d {
 
 Deflections greatest_deflections(const Vehicle& vehicle, const State& state) {
-    constexpr double least = -std::numeric_limits<double>::infinity();
+    constexpr double least = -infinity;
     Deflections found{least, least, least};
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const TrussMesh& mesh = vehicle.units[u].trusses;

@@ -72,7 +72,7 @@ void judge_rest(const Scene& scene, const State& state, Event& event) {
 
 Verdict Event::outcome() const {
     if (!rolled_over() || verdict == Verdict::passed || verdict == Verdict::overridden) return verdict;
-    return behind ? Verdict::overridden : Verdict::rolled_over;
+    return behind_element ? Verdict::overridden : Verdict::rolled_over;
 }
 
 Event begin_event(const Scene& scene, const State& start) {
@@ -89,14 +89,14 @@ Event begin_event(const Scene& scene, const State& start) {
 void follow_event(const Scene& scene, const State& state, const StepContact& contact, Event& event) {
     event.least_upright = std::min(event.least_upright, least_up_cosine(state));
     if (!scene.barrier) return;
-    note_slowness(scene, state, event);
+    note_creeping(scene, state, event);
     note_sliding(scene, state, event);
     const BodyState& body = state.units.front().body;
     if (!event.over_top && body.position.dot(event.towards) > event.line) {
         if (!event.crossed) event.crossed = true, event.crossing = body.position;
         event.over_top = stands_over_barrier(scene, state);
     }
-    if (event.crossed && event.rolled_over()) event.behind = is_behind_element(scene, state, event);
+    if (event.crossed && event.rolled_over()) event.behind_element = is_behind_element(scene, state, event);
     const bool touched_before = event.touching;
     event.touching = contact.held_by_barrier || touches_barrier(scene, state);
     if (event.touching) {

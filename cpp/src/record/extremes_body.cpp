@@ -1,7 +1,6 @@
 // How far the rigid bodies got past the barrier's line, and how high their wheels.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "birm3d/record/extremes.hpp"
@@ -69,7 +68,7 @@ double penetration_of(const UnitHistory& unit, const TrussMesh& mesh, const Vec3
     };
     // Starting with the row where the mass centre is furthest excludes most other rows.
     std::size_t deepest = 0;
-    double furthest_along = -std::numeric_limits<double>::infinity();
+    double furthest_along = -infinity;
     for (std::size_t k = 0; k < unit.position.size(); ++k)
         if (const double at = past.dot(unit.position[k]); at > furthest_along)
             furthest_along = at, deepest = k;

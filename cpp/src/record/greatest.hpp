@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "birm3d/base/types.hpp"
 
@@ -15,7 +14,7 @@ inline double greatest_of(const double* values, std::size_t n) {
     constexpr std::size_t columns = 8;
     double most[columns];
     for (double& column : most)
-        column = -std::numeric_limits<double>::infinity();
+        column = -infinity;
     std::size_t i = 0;
     for (; i + columns <= n; i += columns)
         for (std::size_t c = 0; c < columns; ++c)

@@ -1,7 +1,6 @@
 #include "record/rest.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 
@@ -9,11 +8,11 @@ namespace birm3d {
 
 namespace {
 
-// Share of the approach speed below which all is at rest.
+// Speed over approach speed below which a vehicle is at rest.
 constexpr double rest_share = 1e-3;
 
-// A vehicle is slow below this speed (m/s), but not above this share of its approach speed. Small: a vehicle that skin and tyres
-// press on the barrier creeps for seconds, ever more slowly. Large: one that still gets somewhere counts as at rest.
+// A vehicle creeps below this speed (m/s), and below this share of its approach speed. With smaller limits, a vehicle that skin
+// and tyres press on the barrier takes seconds to come to rest. With greater ones, a vehicle that still travels counts as at rest.
 constexpr double creeping_speed = 0.02;
 constexpr double creeping_share = 0.02;
 
@@ -25,7 +24,7 @@ double kinetic_energy_at(const Scene& scene, double speed) {
     return energy;
 }
 
-// Kinetic energy below which a vehicle creeps: it gets nowhere, though pressed skin and loaded tyres keep it moving (J).
+// Kinetic energy below which a vehicle creeps: only pressed skin and loaded tyres keep it moving (J).
 double creeping_energy(const Scene& scene) {
     const double speed = scene.approach.speed;
     const double creeping = std::min(creeping_speed, creeping_share * speed);
@@ -38,16 +37,16 @@ double rest_energy(const Scene& scene) {
     return kinetic_energy_at(scene, rest_share * scene.approach.speed);
 }
 
-void note_slowness(const Scene& scene, const State& state, Event& event) {
+void note_creeping(const Scene& scene, const State& state, Event& event) {
     if (state.energies.kinetic < creeping_energy(scene))
-        event.slow_since = std::min(event.slow_since, state.time);
+        event.creeping_since = std::min(event.creeping_since, state.time);
     else
-        event.slow_since = std::numeric_limits<double>::infinity();
+        event.creeping_since = infinity;
 }
 
 bool rests(const Scene& scene, const State& state, const Event& event) {
     return state.energies.kinetic + state.energies.stored < rest_energy(scene) ||
-           state.time - event.slow_since >= tolerance::rest_duration;
+           state.time - event.creeping_since >= tolerance::rest_duration;
 }
 
 }  // namespace birm3d

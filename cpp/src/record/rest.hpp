@@ -9,7 +9,7 @@ namespace birm3d {
 double rest_energy(const Scene& scene);
 
 // After each accepted step: since when is all slow?
-void note_slowness(const Scene& scene, const State& state, Event& event);
+void note_creeping(const Scene& scene, const State& state, Event& event);
 
 // Has all come to rest: with neither kinetic nor stored energy, or slow for tolerance::rest_duration?
 bool rests(const Scene& scene, const State& state, const Event& event);

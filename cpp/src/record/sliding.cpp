@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "kernels/integrate.hpp"
@@ -77,7 +76,7 @@ bool goes_on_sliding(const Scene& scene, const State& state, const Event& event)
 void note_sliding(const Scene& scene, const State& state, Event& event) {
     if (event.decided()) return;
     if (!may_slide(scene, state) || !(other_energy(scene, state, event) < rest_energy(scene))) {
-        event.slides_since = std::numeric_limits<double>::infinity();
+        event.slides_since = infinity;
     } else if (!(event.slides_since < state.time)) {
         event.slides_since = state.time;
         event.slides_from_speed = speed_along(state, event);

@@ -96,7 +96,7 @@ void for_each_indentation(const Scene& scene, const UnitState& unit, const Unit&
             if (distance > 0.0) {
                 indentation.low = -infinity;
                 indentation.high = infinity;
-                indentation.lying = infinity;
+                indentation.edge_allowance = infinity;
             }
             use(indentation, i, p);
         }

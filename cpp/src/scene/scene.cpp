@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "birm3d/base/error.hpp"
@@ -126,7 +125,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
         obstacles.push_back(
             {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), settings.mu_body, ground});
     map = ObstacleMap(obstacles, moving_count());
-    thinnest = std::numeric_limits<double>::infinity();
+    thinnest = infinity;
     for (const Obstacle& obstacle : obstacles)
         thinnest =
             std::min({thinnest, thickness(obstacle.shape), 2.0 * bounds(obstacle.shape).half.minCoeff()});

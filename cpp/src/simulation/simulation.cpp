@@ -108,7 +108,7 @@ EndReason Simulation::end_reason() const {
     if (!state_.decided) return EndReason::longest;
     if (event_.manner == Manner::slides_on) return EndReason::sliding;
     if (!event_.left)
-        return EndReason::stopped;  // pressed skin may still move its mass centre away, and touch
+        return EndReason::stopped;  // in contact and at rest; springback of the skin may move it a little
     // A vehicle that left may turn so fast in the tail that `has_left` no longer holds: it is not at rest.
     const bool stopped = !has_left(scene_, state_) && rests(scene_, state_, event_);
     return stopped ? EndReason::stopped : EndReason::separated;

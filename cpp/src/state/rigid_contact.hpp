@@ -1,8 +1,6 @@
 // Rigid contacts and joints as rows of the impulse solver.
 #pragma once
 
-#include <limits>
-
 #include "birm3d/base/types.hpp"
 
 namespace birm3d {
@@ -30,8 +28,7 @@ struct RigidContact {
     bool is_impact = false;   // did it approach hard before the forces of the half step?
     bool about_axis = false;  // turns the bodies about `normal` instead of pushing along it
     int axis = 0;             // of a sliding joint: body axis of the leading body along which `normal` points
-    double most_force =
-        std::numeric_limits<double>::infinity();  // greatest force of a sliding joint along its axis (N)
+    double most_force = infinity;  // greatest force of a sliding joint along its axis (N)
     bool slides = false;    // result of a sliding joint: `impulse` is that of `most_force`, and no unknown
     double friction = 0.0;  // Coulomb coefficient of a bottomed-out truss
     Vec3 sliding_surface = Vec3::Zero();   // velocity of the obstacle's surface there (m/s)
@@ -40,7 +37,7 @@ struct RigidContact {
 
 // Is it the row of a sliding joint along which the bodies may slide?
 inline bool may_slide(const RigidContact& contact) {
-    return contact.most_force < std::numeric_limits<double>::infinity();
+    return contact.most_force < infinity;
 }
 
 // Force and torque of a unit impulse on the body, about its mass centre. The other body's is the opposite, at its own

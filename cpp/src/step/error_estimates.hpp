@@ -13,7 +13,7 @@ struct EffectiveInertia {
     const RigidBody& body;
     double gyration;                         // radius of gyration of the unit (m)
     Mat3 inverse_inertia;                    // of the unit, world axes (1/(kg m^2))
-    const MovingElement* segment = nullptr;  // null: the obstacle is fixed
+    const MovingElement* segment = nullptr;  // of a free-standing barrier; null: fixed, or a post
 };
 
 // Error by a load that departs from its extrapolation by `departure` at the end of the step: at most an eighth of the

@@ -22,11 +22,12 @@ _HEAD_ON = 45.0  # deg from the normal of the barrier, up to which a front is me
 
 
 class LowBarrierWarning(UserWarning):
-    """A vehicle is computed to be stopped head-on by a barrier that is lower than most of its front.
+    """The barrier contains a vehicle, but is lower than most of the front that it is said to hold.
 
-    More than a third of what the front resists with stands above the barrier, see
-    :func:`birm3d.vehicle.front_height.strong_height`. The computed front is held as a whole by what its
-    lower part meets. A real one is bent down, or rides up and over.
+    More than a third of the front's resistance stands above the barrier's top, see
+    :func:`birm3d.vehicle.front_height.strong_height`. The vehicle came within 45 degrees of the barrier's
+    normal. The computed front is held as a whole by what its lower part meets. A real one is bent down, or
+    rides up and over.
     """
 
 
@@ -48,7 +49,7 @@ def low_barrier_lines(result: RunAnalysis) -> Iterator[str]:
         return
     height, top = found
     yield (
-        f"The barrier ends {top:.2f} m above the ground. A third of what the front resists with stands above "
+        f"The barrier ends {top:.2f} m above the ground. A third of the front's resistance stands above "
         f"{height:.2f} m. The computed front is held by its lower part; a real one may ride over. Do not "
         "rely on the outcome."
     )
@@ -56,9 +57,8 @@ def low_barrier_lines(result: RunAnalysis) -> Iterator[str]:
 
 def _text(title: str, height: float, top: float) -> str:
     return (
-        f"height must be at least {height:.2f} m, below which two thirds of the front resist ({title}), "
-        f"to rely on the outcome, got {top:.2f} m: the computed front is held by its lower part, a real one "
-        "may ride over"
+        f"height must be at least {height:.2f} m to rely on the outcome, got {top:.2f} m: more than a third "
+        f"of the front's resistance ({title}) stands above the barrier, and a real front may ride over it"
     )
 
 

@@ -34,8 +34,8 @@ _STANDSTILL = 0.1
 PARTS = ("segments", "posts", "moving", "joint", "sliding")
 """What only some scenes have, and some metrics need.
 
-Free-standing segments, posts that yield, one of these, a joint between two units, and one of the kind
-"sliding".
+Segments: free-standing segments. Posts: posts that yield. Moving: either of them. Joint: two units.
+Sliding: a load bed that slides.
 """
 
 

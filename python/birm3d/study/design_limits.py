@@ -36,7 +36,7 @@ _OVER = (
     "are estimates, and the barrier does not give way under it: leave a margin. Guidance for security "
     "bollards asks for 0.5 m or more."
 )
-_STRONG = "{:.2f} m, above which a third of the front resists"
+_STRONG = "{:.2f} m: more than a third of the front's resistance would stand above the barrier"
 _SLIDES = "Computed, not tested. Segments slide but do not tip, and their joints do not break."
 _TIPS = (
     " At {value:,.0f} kg max_overturning_ratio is {ratio:.1f}: a segment would begin to tip, and the answer "

@@ -2,7 +2,6 @@
 // solid goes on endlessly below z = 0: nothing is ever pushed out downwards.
 #pragma once
 
-#include <limits>
 #include <optional>
 
 #include "birm3d/geometry/nearest.hpp"
@@ -12,8 +11,7 @@ namespace birm3d {
 struct Post {
     // Refuses a radius that is not finite and > 0, a height that is not > 0 (it may be infinite), and a direction that is not
     // finite.
-    explicit Post(double radius, double height = std::numeric_limits<double>::infinity(),
-                  std::optional<double> opens = {});
+    explicit Post(double radius, double height = infinity, std::optional<double> opens = {});
 
     double radius;  // m
     double height;  // m

@@ -13,7 +13,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -44,7 +43,7 @@ class TriangleMesh {
     // behind its plane, the way back leads through the face (P1) after `longest` at the most (m), and so does
     // the normal (P2). None, if no face meets both conditions. It does not ask whether p is inside at all.
     std::optional<Nearest> vertex_to_face(const Vec3& p, const Vec3& direction,
-                                          double longest = std::numeric_limits<double>::infinity()) const;
+                                          double longest = infinity) const;
 
     // What a vertex touches that has come to `p` by the motion `motion` (m); `exact`: what nearest says of p.
     // Outside the mesh: that. Inside: vertex_to_face, where the motion leads through the face; else (beside an

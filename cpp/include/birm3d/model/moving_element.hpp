@@ -9,7 +9,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 
 #include "birm3d/geometry/post.hpp"
 #include "birm3d/geometry/prism.hpp"
@@ -35,21 +34,22 @@ struct YieldingPosts {
     double plastic_moment;  // of the tube, or that the foundation resists, about the centre of rotation (N m)
 };
 
-// An element that moves. A post that yields has its centre of rotation where a segment has its mass centre: the
-// body's inertia is about it, and the inverse mass is zero, because it stays where it is.
+// An element that moves: a free-standing segment, or a post that yields. The origin of a post's `body` is its centre of rotation,
+// and its inertia is about that. This point is fixed, so the inverse mass is zero. A post uses neither `mass_center_height` nor
+// `corner`.
 struct MovingElement {
     RigidBody body;             // own axes of the element, origin at the mass centre
     double mass_center_height;  // above the ground (m)
     double reach;        // of a moving point from the axis through the mass centre; of a post its height (m)
     double half_length;  // m
     double half_base;    // from the middle to the nearer edge of its base (m)
-    std::array<Vec3, 4> corner;  // of its base, from the mass centre, own axes (m)
-    double plastic_moment = std::numeric_limits<double>::infinity();  // of a post that yields (N m)
+    std::array<Vec3, 4> corner;        // of its base, from the mass centre, own axes (m)
+    double plastic_moment = infinity;  // of a post that yields (N m)
 
     double lying_tilt =
         0.0;  // tilt at which a post that yields lies on the ground: it turns no further (rad)
 
-    bool tilts() const { return plastic_moment < std::numeric_limits<double>::infinity(); }
+    bool tilts() const { return plastic_moment < infinity; }
 };
 
 // Refuses a density that is not > 0, and a prism without ends or top or with nothing above z = 0. The mass centre

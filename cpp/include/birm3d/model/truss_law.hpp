@@ -34,7 +34,6 @@
 // finite-element vehicles at walls is 4 to 10. A straight line would have n = 1. Without a recovery Fig. 3 holds.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "birm3d/base/types.hpp"
@@ -47,7 +46,7 @@ struct TrussCurve {
     std::vector<double> deflection;  // where the slope changes; starts at 0, increasing (m)
     std::vector<double> slope;       // slope from there on; the last one extends to infinity
     double k_unloading = 0.0;        // with a recovery: the least slope where the load turns
-    double recovery = std::numeric_limits<double>::infinity();  // m, see has_recovery()
+    double recovery = infinity;      // m, see has_recovery()
     // Of the barrier's friction, in [0, 1]: folded parts stick to the barrier while the vehicle moves on, and only this
     // share reaches the rigid body.
     double friction_share = 1.0;

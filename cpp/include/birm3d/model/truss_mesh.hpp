@@ -89,10 +89,10 @@ std::vector<Box> outlines_of(std::vector<Vec3> nodes, const Vec3& inward);
 // as that. Between the outlines it is linear in `depth`. A bumper is narrower than the body behind it.
 Box outline_at(const Panel& panel, double depth);
 
-// Heights of a panel's nodes (body axes) above its lower edge: above its lowest node that is at most column_width further along
-// the panel. Of panels that look up or down: zero.
+// Height of each of a panel's nodes (body axes) above the panel's lowest node within column_half_width to either side (m). Zero for
+// panels that look up or down.
 std::vector<double> heights_above_edge(const std::vector<Vec3>& nodes, const Vec3& inward);
-inline constexpr double column_width = 0.2;  // m
+inline constexpr double column_half_width = 0.2;  // m
 
 inline constexpr std::size_t panels = 6;
 
@@ -104,7 +104,7 @@ struct alignas(64) TrussBlock {
     BlockColumn compliance;                    // 1/k_unloading, or 0 for a truss without stiffness (m/N)
     BlockColumn recovery;                      // of its curve, see has_recovery() (m)
     BlockColumn panel;                         // number of its panel
-    BlockColumn below;  // of its node down to the panel's lower edge there, see heights_above_edge() (m)
+    BlockColumn height_above_edge;             // of its node, see heights_above_edge() (m)
 };
 
 // Anchor of the i-th truss of a block, body axes (m).

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "birm3d/base/types.hpp"
 
@@ -25,16 +24,16 @@ struct Wheel {
     double radius = 0.0;         // m
     // Load on the ground at which springs and hangers give way (N). The wheel then carries nothing until the body has
     // come down by `travel` (m).
-    double breakaway = std::numeric_limits<double>::infinity();
+    double breakaway = infinity;
     double travel = 0.0;
     Suspension suspension{};  // `center` is where it holds the wheel at rest
     // After which a free wheel has turned 63 % of the way to its direction of travel (s). Infinite: it does not steer.
-    double steering_time = std::numeric_limits<double>::infinity();
+    double steering_time = infinity;
     double tread_radius = 0.0;  // of the tread's cross-section, at most `radius` (m)
     // Slip angle that has the same side force, per tilt: a tilted wheel rolls on a curve towards the side it leans to.
     double camber_ratio = 0.0;
 
-    bool steers() const { return steering_time < std::numeric_limits<double>::infinity(); }
+    bool steers() const { return steering_time < infinity; }
 };
 
 // From the mass centre to the lowest point of a wheel, for the body's rotation R; world axes (m). The wheel is pushed up

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "birm3d/scene/scene.hpp"
 
@@ -13,8 +12,8 @@ enum class Verdict {
     stopped,     // the barrier contained the vehicle, which rebounds from it or rests
     redirected,  // the barrier contained the vehicle, which goes on along it
     passed,      // the vehicle got past the barrier's line or its end
-    overridden,  // it got past the line with the barrier's top under its rigid body, or lies behind what it crossed
-    rolled_over,  // it did not get past the line, and an up axis of a unit pointed below the horizontal
+    overridden,  // it got past the line over the barrier's top, or rolled over and is behind the element that it crossed
+    rolled_over,  // an up axis of a unit pointed below the horizontal, and the vehicle is neither `passed` nor `overridden`
 };
 
 // How the vehicle came to its verdict.
@@ -43,17 +42,18 @@ struct Event {
     bool over_top = false;
     bool crossed = false;          // was unit 0's mass centre ever past the line?
     Vec3 crossing = Vec3::Zero();  // unit 0's mass centre as it first was past the line, world axes (m)
-    bool behind = false;           // has it rolled over, and is that mass centre behind what it crossed?
+    // Has it rolled over, and is that mass centre behind the far side of the element that it crossed?
+    bool behind_element = false;
 
     bool touching = false;                  // does the vehicle touch the barrier now?
     double released_at = 0.0;               // time at which it last lost contact with the barrier (s)
     Vec3 released_velocity = Vec3::Zero();  // velocity of unit 0's mass centre at that time, world axes (m/s)
 
-    // Time since which the kinetic energy of all that moves has been below that of a slow vehicle (s).
-    double slow_since = std::numeric_limits<double>::infinity();
+    // Time since which the kinetic energy has been below that of a vehicle that creeps, see record/rest.cpp (s).
+    double creeping_since = infinity;
 
     // Time since which the vehicle has slid along the barrier with no other motion (s), and its speed then (m/s).
-    double slides_since = std::numeric_limits<double>::infinity();
+    double slides_since = infinity;
     double slides_from_speed = 0.0;
 
     bool left = false;        // has the vehicle left the barrier for good?

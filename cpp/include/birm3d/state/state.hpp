@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "birm3d/base/hash.hpp"
@@ -41,7 +40,8 @@ struct UnitState : UnitMotion {
     TrussState trusses;
 };
 
-// Energies in J. They grow from zero, but for `kinetic`, `potential` and `springs`.
+// Energies in J, from zero but for `kinetic`. Losses grow. `kinetic`, `potential`, `stored` and `springs` rise and fall; `joints`
+// is zero up to the error of the steps.
 struct Energies {
     double kinetic = 0.0;
     double potential = 0.0;         // of gravity, zero at the start
@@ -51,7 +51,7 @@ struct Energies {
     double tire_friction = 0.0;     // lost to friction of tyres on the ground
     double ground_friction = 0.0;   // lost to friction of the skin on the ground
     double impacts = 0.0;           // lost in rigid contacts
-    double joints = 0.0;            // taken by what joints hold: zero but for the error of the steps
+    double joints = 0.0;            // work of joint forces
     double segment_friction = 0.0;  // lost to friction of free-standing segments on the ground
     double springs = 0.0;           // in the springs of wheels, less that at rest
     double dampers = 0.0;           // lost in the dampers of wheels
@@ -68,11 +68,10 @@ struct Energies {
 struct StepStatistics {
     std::uint64_t steps = 0;
     std::uint64_t rejected = 0;
-    std::uint64_t node_evaluations = 0;                              // of rejected steps too
-    double shortest_step = std::numeric_limits<double>::infinity();  // s
-    double longest_step = 0.0;                                       // s
-    double least_critical_step =
-        std::numeric_limits<double>::infinity();  // s, sqrt(3)/omega of the trusses in contact
+    std::uint64_t node_evaluations = 0;     // of rejected steps too
+    double shortest_step = infinity;        // s
+    double longest_step = 0.0;              // s
+    double least_critical_step = infinity;  // s, sqrt(3)/omega of the trusses in contact
     double deepest_point =
         0.0;  // greatest depth of a truss's anchor inside a barrier at the end of a step (m)
     double greatest_overlap =
