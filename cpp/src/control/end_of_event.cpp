@@ -1,6 +1,8 @@
 #include "control/end_of_event.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "birm3d/base/tolerances.hpp"
 #include "kernels/integrate.hpp"
@@ -12,27 +14,51 @@ namespace birm3d {
 
 namespace {
 
-// Vector to `p` from the nearest point of a convex hull of the shape, own axes.
-Vec3 from_hull(const Shape& shape, const Box& box, const Vec3& p) {
-    if (const auto* plane = std::get_if<HalfSpace>(&shape))
-        return std::max(0.0, plane->gap(p)) * plane->normal;
+// Vector to `p` from the nearest point of a box.
+Vec3 from_box(const Box& box, const Vec3& p) {
     const Vec3 from = p - box.center;
     return from - from.cwiseMax(-box.half).cwiseMin(box.half);
 }
 
-// Around all that is joined to obstacle `i`, its own axes.
+// Vector to `p` from the nearest point of a convex hull of the shape, own axes.
+Vec3 from_hull(const Shape& shape, const Box& box, const Vec3& p) {
+    if (const auto* plane = std::get_if<HalfSpace>(&shape))
+        return std::max(0.0, plane->gap(p)) * plane->normal;
+    return from_box(box, p);
+}
+
+// The box around a box whose own axes are turned by `rotation` and begin at `origin`. A half width may be infinite.
+Box turned(const Box& box, const Mat3& rotation, const Vec3& origin) {
+    constexpr double aligned = 1e-9;  // 0 times infinity would be NaN
+    Box around{origin + rotation * box.center, Vec3::Zero()};
+    for (int axis = 0; axis < 3; ++axis)
+        for (int own = 0; own < 3; ++own)
+            if (std::abs(rotation(axis, own)) > aligned)
+                around.half[axis] += std::abs(rotation(axis, own)) * box.half[own];
+    return around;
+}
+
+// The box around two boxes.
+Box around_both(const Box& one, const Box& other) {
+    Box both = one;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = std::min(one.center[axis] - one.half[axis], other.center[axis] - other.half[axis]);
+        const double high =
+            std::max(one.center[axis] + one.half[axis], other.center[axis] + other.half[axis]);
+        both.half[axis] = 0.5 * (high - low);
+        if (std::isfinite(both.half[axis])) both.center[axis] = 0.5 * (low + high);
+    }
+    return both;
+}
+
+// Around all that is joined to obstacle `i`, in its own axes.
 Box box_of_structure(const Scene& scene, std::size_t i) {
     const Obstacle& first = scene.obstacles[i];
     Box box = bounds(first.shape);
     for (std::size_t j = i + 1; j < scene.obstacles.size() && scene.obstacles[j].structure == i; ++j) {
-        // Segments follow each other along y.
-        const Box further = bounds(scene.obstacles[j].shape);
-        const double shift = first.rotation.col(1).dot(scene.obstacles[j].position - first.position);
-        const double low =
-            std::min(box.center.y() - box.half.y(), shift + further.center.y() - further.half.y());
-        const double high =
-            std::max(box.center.y() + box.half.y(), shift + further.center.y() + further.half.y());
-        box.center.y() = 0.5 * (low + high), box.half.y() = 0.5 * (high - low);
+        const Obstacle& part = scene.obstacles[j];
+        box = around_both(box, turned(bounds(part.shape), first.rotation.transpose() * part.rotation,
+                                      first.rotation.transpose() * (part.position - first.position)));
     }
     return box;
 }
@@ -61,6 +87,61 @@ bool tips(const Scene& scene, const State& state) {
                 return true;
     }
     return false;
+}
+
+// Does a unit that stands on its wheels slide sideways, or turn? Its tyres then still change the direction of its path.
+bool skids(const Scene& scene, const State& state) {
+    constexpr double slowest = 0.5,
+                     share = 0.1;  // m/s; of the speed: a slide that turns the path by 6 degrees
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const Unit& unit = scene.vehicle->units[u];
+        const BodyState& body = state.units[u].body;
+        if (unit.wheels.empty() || !((body.orientation * Vec3::UnitZ()).z() > tolerance::upright_cosine))
+            continue;
+        const double yaw_rate = angular_velocity(unit.body, body).z(),
+                     least = std::max(slowest, share * body.velocity.norm());
+        if (std::abs(body.velocity.dot(body.orientation * Vec3::UnitY())) > least ||
+            std::abs(yaw_rate) * unit.trusses.reach > least)
+            return true;
+    }
+    return false;
+}
+
+// Boxes around the barrier, around each of its posts or around its free-standing chain. Axes: towards the barrier, along its
+// line, upwards.
+std::vector<Box> boxes_of_barrier(const Scene& scene, const State& state, const Mat3& axes) {
+    std::vector<Box> boxes;
+    for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
+        if (scene.obstacles[i].structure != i) continue;
+        const Pose pose = pose_of(scene, i, state);
+        const Box box = turned(box_of_structure(scene, i), axes.transpose() * pose.rotation,
+                               axes.transpose() * pose.position);
+        if (boxes.empty() || !scene.slides())
+            boxes.push_back(box);
+        else
+            boxes.front() = around_both(boxes.front(), box);
+    }
+    return boxes;
+}
+
+// May the vehicle still come past an end of the barrier, though it moves away from it now? It may where it skids beside an end,
+// and is not past the barrier yet.
+bool may_turn_back(const Scene& scene, const State& state) {
+    constexpr double far_from_ends = 2.0;  // reaches of the vehicle
+    if (!scene.settings.ground || scene.settings.gravity == 0.0 || scene.settings.mu_tire == 0.0)
+        return false;
+    if (!skids(scene, state)) return false;
+    Mat3 axes;
+    axes << scene.towards(), Vec3::UnitZ().cross(scene.towards()), Vec3::UnitZ();
+    const Vec3 place = axes.transpose() * state.units.front().body.position,
+               velocity = axes.transpose() * state.units.front().body.velocity;
+    const double margin = far_from_ends * scene.vehicle->units.front().trusses.reach;
+    bool past = velocity.x() > 0.0;
+    for (const Box& box : boxes_of_barrier(scene, state, axes)) {
+        if (std::abs(place.y() - box.center.y()) < box.half.y() - margin) return false;
+        past = past && place.x() > box.center.x();
+    }
+    return !past;
 }
 
 // Moving elements that friction can stop have stopped.
@@ -124,18 +205,16 @@ bool has_left_elements(const Scene& scene, const State& state, std::size_t u) {
 bool has_left_chain(const Scene& scene, const State& state, std::size_t u) {
     if (!scene.slides()) return false;
     const Mat3& axes = scene.obstacles.front().rotation;
-    Eigen::AlignedBox3d chain;
+    std::optional<Box> chain;
     for (std::size_t i = 0; i < state.moving_elements.size(); ++i) {
         const Pose pose = pose_of(scene, i, state);
-        const Box box = bounds(scene.obstacles[i].shape);
-        const Mat3 rotation = axes.transpose() * pose.rotation;
-        const Vec3 center = axes.transpose() * pose.position + rotation * box.center;
-        const Vec3 half = rotation.cwiseAbs() * box.half;
-        chain.extend(Eigen::AlignedBox3d(center - half, center + half));
+        const Box segment = turned(bounds(scene.obstacles[i].shape), axes.transpose() * pose.rotation,
+                                   axes.transpose() * pose.position);
+        chain = chain ? around_both(*chain, segment) : segment;
     }
     const BodyState& body = state.units[u].body;
     const Vec3 position = axes.transpose() * body.position;
-    const Vec3 from = position - position.cwiseMax(chain.min()).cwiseMin(chain.max());
+    const Vec3 from = from_box(*chain, position);
     const double distance = from.norm();
     if (!(distance > 0.0)) return false;
     const double away = (axes.transpose() * body.velocity).dot(from) / distance;
@@ -157,7 +236,8 @@ bool has_left(const Scene& scene, const State& state) {
 }
 
 bool is_over(const Scene& scene, const State& state) {
-    return has_left(scene, state) && !tips(scene, state) && moving_elements_rest(scene, state);
+    return has_left(scene, state) && !tips(scene, state) && !may_turn_back(scene, state) &&
+           moving_elements_rest(scene, state);
 }
 
 double time_of_decision(const Scene& scene, std::span<const BodyState> before, double released, double dt,

@@ -55,6 +55,21 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
     event.manner = Manner::rebounds;
 }
 
+// A vehicle that was stopped or redirected has passed if it comes past an end of the barrier afterwards, on a curved path.
+// `at_end`: has the run been decided? Then it also has if it moves towards the line.
+void revise(const Scene& scene, const State& state, bool at_end, Event& event) {
+    if (!event.left || event.touching || event.rolled_over() || runs_along_line(scene)) return;
+    if (event.verdict != Verdict::stopped && event.verdict != Verdict::redirected) return;
+    const Vec3& velocity = state.units.front().body.velocity;
+    const bool moves = velocity.norm() > tolerance::stopped_share * scene.approach.speed;
+    const bool nears = at_end && moves && velocity.dot(event.towards) > parallel * velocity.norm();
+    const bool past =
+        distance_past_line(scene, state, event) > 0.0 && crossed_beside_elements(scene, state, event);
+    if (!nears && !past) return;
+    event.verdict = Verdict::passed;
+    event.manner = moves ? Manner::beside : Manner::rests_beyond;
+}
+
 // Gives the event of a vehicle that came to rest before it had left its verdict.
 void judge_rest(const Scene& scene, const State& state, Event& event) {
     const double past = distance_past_line(scene, state, event);
@@ -103,6 +118,7 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
         if (!touched_before && event.left) ++event.later_contacts;
         return;
     }
+    revise(scene, state, false, event);
     if (event.left || event.decided()) return;
     if (touched_before) {
         event.released_at = std::min(contact.begin + contact.released, state.time);
@@ -116,9 +132,11 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
 }
 
 bool is_decided(const Scene& scene, const State& state, Event& event) {
-    if (event.left && !event.touching && is_over(scene, state)) return true;
-    if (rests(scene, state, event)) {
-        if (!event.decided()) judge_rest(scene, state, event);
+    const bool over = event.left && !event.touching && is_over(scene, state),
+               at_rest = rests(scene, state, event);
+    if (over || at_rest) {
+        if (!over && !event.decided()) judge_rest(scene, state, event);
+        revise(scene, state, true, event);
         return true;
     }
     if (event.decided() || !slides_on(scene, state, event)) return false;
@@ -131,6 +149,7 @@ bool is_decided(const Scene& scene, const State& state, Event& event) {
 }
 
 void judge_at_longest(const Scene& scene, const State& state, Event& event) {
+    revise(scene, state, true, event);
     if (event.decided() || !state.touched || runs_along_line(scene)) return;
     if (is_behind_element(scene, state, event)) {
         event.verdict = Verdict::overridden, event.manner = Manner::over;

@@ -127,6 +127,17 @@ Vec3 line_direction(const Event& event) {
     return {-event.towards.y(), event.towards.x(), 0.0};
 }
 
+bool crossed_beside_elements(const Scene& scene, const State& state, const Event& event) {
+    if (!event.crossed) return false;
+    const Vec3 line = line_direction(event);
+    const double at = event.crossing.dot(line);
+    for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
+        const Range along = range_along(scene, i, state, line);
+        if (along.low <= at && at <= along.high) return false;
+    }
+    return true;
+}
+
 bool is_behind_element(const Scene& scene, const State& state, const Event& event) {
     if (!event.crossed) return false;
     const Vec3 line = line_direction(event);

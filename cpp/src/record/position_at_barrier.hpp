@@ -30,6 +30,9 @@ bool stands_over_barrier(const Scene& scene, const State& state);
 // Is the mass centre of unit 0 behind the far side of an element over which it crossed the line?
 bool is_behind_element(const Scene& scene, const State& state, const Event& event);
 
+// Did it cross the line where no element stands?
+bool crossed_beside_elements(const Scene& scene, const State& state, const Event& event);
+
 // Did the mass centre cross the line between two elements? Otherwise it passed beside the barrier's end.
 bool passes_between(const Scene& scene, const State& state, const Event& event);
 

@@ -112,6 +112,14 @@ SECURITY = {
 }
 
 
+_GOES_ON = "the vehicle goes on past the barrier"
+_COASTS = 0.25
+"""At this speed [m/s] a rolling resistance of a hundredth of the weight stops a vehicle within 0.4 m.
+
+The model has no rolling resistance.
+"""
+
+
 class _Penetration(NamedTuple):
     greatest: float  # m
     final: bool  # whether it can not grow any more
@@ -152,7 +160,11 @@ def rate_security(
     rate = {"levels": _astm, "K": _dos, "code": _code}[standard.style]
     designation, contained, rows = rate(result, standard, vehicle, found)
     rows = (*rows[:-1], *heading_rows(result, _HEAD_ON), rows[-1])
-    failed = [row.name for row in (mass, *rows) if row.passed is False]
+    failed = [
+        row.name if found.final or row is not rows[-1] else _GOES_ON
+        for row in (mass, *rows)
+        if row.passed is False
+    ]
     return Rating(
         standard.name,
         f"no rating: {', '.join(failed)}" if failed else designation,
@@ -188,16 +200,18 @@ def _penetration(
     past = penetration_history(result, point, part, datum)
     greatest = float(past.max())
     moving_in = float(result.final_velocity @ np.asarray(result.scene.barrier._past))  # type: ignore[union-attr]
-    if is_open(result) and moving_in > 0.0:
+    turning_in = not gets_past(result) and result.end_reason == "duration"
+    if (is_open(result) and moving_in > 0.0) or (turning_in and moving_in > _COASTS):
         raise ValueError(
             "result must have run until the vehicle is stopped or has left (duration=None), got one that "
             f"ends at {result.time[-1]:g} s with {moving_in:.2f} m/s into the barrier"
         )
-    if gets_past(result) and moving_in > 0.0:
+    if (gets_past(result) or result.end_reason == "longest") and moving_in > _COASTS:
         return _Penetration(
             greatest, False, f"{result.outcome}, goes on at {moving_in:.1f} m/s: at least this"
         )
-    return _Penetration(greatest, True, "dynamic")
+    coasts = gets_past(result) and moving_in > 0.0
+    return _Penetration(greatest, True, f"dynamic; it coasts at {moving_in:.2f} m/s" if coasts else "dynamic")
 
 
 def _level(speed: float, windows: Sequence[_Window]) -> str | None:
@@ -226,7 +240,7 @@ def _class_row(found: _Penetration, steps: Sequence[tuple[str, float]]) -> tuple
     limit = ", ".join(
         f"{step} <= {most:.3g}" if most < math.inf else f"{step} beyond" for step, most in steps
     )
-    value = name or "beyond all classes"
+    value = name or ("beyond all classes" if found.final else _GOES_ON)
     return name, Criterion("penetration class", value, "", f"{limit} m", name is not None)
 
 
@@ -267,7 +281,7 @@ def _code(
     angle = min(result.scene.impact_angle, 180.0 - result.scene.impact_angle)
     stopped = found.final and found.greatest <= _FURTHEST
     distance = max(0.0, found.greatest)
-    value = f"{distance:.1f} m" if stopped else "beyond"
+    value = f"{distance:.1f} m" if stopped else "beyond" if found.final else _GOES_ON
     rows = (
         Criterion("impact speed", speed, "km/h", limit, level is not None, level or "no level"),
         Criterion("penetration distance", value, "", f"reported up to {_FURTHEST:g} m", stopped),

@@ -9,13 +9,13 @@ from ..base.arguments import caller_level
 
 __all__ = ["MassWarning", "UsualMass"]
 
-_LEAST, _MOST = 0.7, 2.5
+_LEAST, _MOST = 0.5, 2.5
 
 
 class MassWarning(UserWarning):
     """The mass asked for is far outside what the vehicle's class can have.
 
-    Usual is from 70 % of the file's empty mass, without payload, to 2.5 times the file's mass. Beyond it the
+    Usual is from half of the file's empty mass, without payload, to 2.5 times the file's mass. Beyond it the
     program still answers: a mass below the empty one makes the structure lighter, one above fills the load
     space. Stiffness stays that of the file. :meth:`birm3d.Vehicle.scaled_to` changes it with the mass, and
     does not warn. Unlike :class:`birm3d.UnitWarning`, it also checks masses given as text with a unit.
@@ -44,7 +44,7 @@ class UsualMass(NamedTuple):
             return
         warnings.warn(
             f"{argument} = {mass:,.6g} kg{where} is far outside what {self.name!r} can have: usual is "
-            f"{self.low:,.0f} to {self.high:,.0f} kg, 70 % of its empty mass to 2.5 times the mass in its "
+            f"{self.low:,.0f} to {self.high:,.0f} kg, half of its empty mass to 2.5 times the mass in its "
             "file. Stiffness stays as it is: choose another preset, or make one with scaled_to() or "
             "Vehicle.from_facts()",
             MassWarning,

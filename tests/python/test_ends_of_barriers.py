@@ -1,0 +1,62 @@
+"""Vehicles at an end of a wall or a planter: left is as right, and who turns back past the end has passed."""
+
+from __future__ import annotations
+
+import pytest
+from birm3d import Barrier, Result, Simulation, Vehicle, rate, units
+
+
+@pytest.fixture(scope="module")
+def sedan() -> Vehicle:
+    return Vehicle.preset("sedan_1500")
+
+
+@pytest.mark.parametrize(
+    "barrier",
+    [Barrier.rigid_wall(width=4.0), Barrier.planter(length=1.0, width=1.0, height=1.2)],
+    ids=["wall without a top", "planter higher than half its length"],
+)
+def test_runs_at_the_left_and_the_right_end_are_mirror_images(barrier: Barrier) -> None:
+    """Once the height of such a block counted as its length on one side, and the runs ended at other times."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.5)
+    left, right = (
+        Simulation(car, barrier, units.km_h(56.0), overlap=0.2, overlap_side=side).run()
+        for side in ("left", "right")
+    )
+    assert (left.outcome, left.outcome_detail) == (right.outcome, right.outcome_detail)
+    # Blows between rigid bodies make rounding grow: a millisecond and a millimetre are far above it.
+    assert left.time[-1] == pytest.approx(right.time[-1], abs=1e-3)
+    for name in ("max_displacement", "vehicle_penetration"):
+        assert left.metrics[name] == pytest.approx(right.metrics[name], abs=1e-3)
+
+
+def at_a_planter(sedan: Vehicle, duration: float | None) -> Result:
+    """Return a run in which the car bounces off the corner, skids round and rolls past the planter's end."""
+    return Simulation(sedan, Barrier.planter(), units.km_h(64.0), 90.0, 1.4, duration=duration).run()
+
+
+def test_a_car_that_turns_back_past_the_end_has_passed(sedan: Vehicle) -> None:
+    """Rebounding at 0.55 s it was rated to stop within 0.3 m; it then rolled 7 m past the planter."""
+    result = at_a_planter(sedan, None)
+    assert result.outcome == "passed"
+    assert result.final_velocity[0] > 1.0
+    rating = rate(result, "IWA 14-1")
+    assert rating.designation == "no rating: the vehicle goes on past the barrier"
+    assert not rating.contained
+    late = at_a_planter(sedan, 5.0)
+    assert late.outcome == "passed"
+    assert late.metrics["exit_speed"] == pytest.approx(result.metrics["exit_speed"], abs=1e-6)
+
+
+def test_a_run_that_ends_while_the_car_turns_back_is_not_rated(sedan: Vehicle) -> None:
+    with pytest.raises(ValueError, match=r"result must have run until .* got one that ends at 2 s"):
+        rate(at_a_planter(sedan, 2.0), "IWA 14-1")
+
+
+def test_a_skid_far_from_the_ends_does_not_lengthen_the_run() -> None:
+    car = Vehicle.preset("passenger_car", mesh_density=0.5)
+    long, endless = (
+        Simulation(car, Barrier.jersey(length=length), 25.0, 20.0).run() for length in (60.0, float("inf"))
+    )
+    assert long.outcome == endless.outcome == "redirected"
+    assert long.time[-1] == pytest.approx(endless.time[-1], abs=0.01)
