@@ -193,16 +193,19 @@ void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vec
         state.energies.joints -= power(kicked.on_pins[i], motion(state.units.size() + i));
     for (std::size_t u = 0; u < kicked.on_ground.size(); ++u)
         state.energies.tire_friction -= power(kicked.on_ground[u], motion(u));
+    double lost_at_posts = 0.0;
     for (const RigidContact& contact : kicked.contacts) {
         const double loss = loss_of(contact, before, after);
-        // A post that its plastic moment holds against the rigid core pushes the core: that is a part of the moment's work.
-        const bool gives_back = loss < 0.0 && scene.tilts() && pushes_moving_element(contact);
-        (gives_back ? at_base : lost_in(contact, state.energies)) += loss;
+        const bool at_post = scene.tilts() && pushes_moving_element(contact);
+        (at_post ? lost_at_posts : lost_in(contact, state.energies)) += loss;
         if (contact.source == ContactSource::core)
             friction_of(scene, contact.obstacle, state.energies) -=
                 power({contact.friction_impulse, contact.arm.cross(contact.friction_impulse)},
                       relative_motion(scene, state, contact.body, contact.obstacle, before, after));
     }
+    // Posts that their plastic moments hold against the rigid core push the core: that is a part of the moments' work. In an
+    // impact, a single contact may gain what others lose.
+    (lost_at_posts < 0.0 ? at_base : state.energies.impacts) += lost_at_posts;
 }
 
 }  // namespace birm3d

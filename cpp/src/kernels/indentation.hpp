@@ -42,8 +42,8 @@
 // face crushes what is deeper beside it.
 //
 // A post or a face draws in skin above its top only where the panel comes down to it. Below a node the panel ends at its lowest
-// node there (heights_above_edge). If that is above the top, as a load bed's side is beside a low wall, nothing begins to hold the
-// node.
+// node there (heights_above_edge). If that is above the top, as a load bed's side is beside a low wall, nothing holds the node. So a
+// vehicle that rises above a post, or that pushes a post over, leaves it.
 //
 // A vertical face with a top edge (top_edge.hpp) holds the skin before it, and draws in the skin above its top:
 //   D(w, l) = E(w) - s (l - top)+
