@@ -17,7 +17,7 @@ def sedan() -> Vehicle:
     ids=["wall without a top", "planter higher than half its length"],
 )
 def test_runs_at_the_left_and_the_right_end_are_mirror_images(barrier: Barrier) -> None:
-    """Once the height of such a block counted as its length on one side, and the runs ended at other times."""
+    """Once the height of such a block counted as its length on one side: the runs ended at other times."""
     car = Vehicle.preset("passenger_car", mesh_density=0.5)
     left, right = (
         Simulation(car, barrier, units.km_h(56.0), overlap=0.2, overlap_side=side).run()

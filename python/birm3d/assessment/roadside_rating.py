@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import units
-from ..result.event import gets_past, has_rolled_over, is_open, outcome_words
+from ..result.event import gets_past, has_rolled_over, is_open, longer_run, outcome_words
 from ..result.segment_motion import base_corners
 from .criteria import Criterion
 from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H, graded, severity_class
@@ -200,7 +200,7 @@ def _containment(result: Result, name: str) -> Criterion:
     furthest = max(float(across_barrier(result, part.position[-1])) for part in parts)
     if inward > _STILL or furthest > 0.0:
         raise ValueError(
-            "result must have run until the outcome is decided (duration=None), got one that ends at "
+            f"result must have run until the outcome is decided ({longer_run(result)}), got one that ends at "
             f"{result.time[-1]:g} s with {inward:.2f} m/s into the barrier: {result.outcome_detail}"
         )
     return Criterion(name, "still beside the barrier", "", limit, True)

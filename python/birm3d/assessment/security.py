@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import units
-from ..result.event import gets_past, is_open, outcome_words
+from ..result.event import gets_past, is_open, longer_run, outcome_words
 from ..result.low_barrier import low_barrier_lines
 from ..vehicle.joint import LONGEST_SLIP
 from .criteria import Criterion
@@ -203,8 +203,8 @@ def _penetration(
     turning_in = not gets_past(result) and result.end_reason == "duration"
     if (is_open(result) and moving_in > 0.0) or (turning_in and moving_in > _COASTS):
         raise ValueError(
-            "result must have run until the vehicle is stopped or has left (duration=None), got one that "
-            f"ends at {result.time[-1]:g} s with {moving_in:.2f} m/s into the barrier"
+            f"result must have run until the vehicle is stopped or has left ({longer_run(result)}), got one "
+            f"that ends at {result.time[-1]:g} s with {moving_in:.2f} m/s into the barrier"
         )
     if (gets_past(result) or result.end_reason == "longest") and moving_in > _COASTS:
         return _Penetration(

@@ -34,6 +34,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
 from .metrics import METRIC_UNITS, compute_metrics
 from .record import RunRecord
 
@@ -44,6 +46,7 @@ __all__ = [
     "gets_past",
     "has_rolled_over",
     "is_open",
+    "longer_run",
     "metrics_of",
     "outcome_detail",
     "outcome_words",
@@ -73,9 +76,17 @@ def is_open(result: RunRecord) -> bool:
     return result._event is None or result._event.manner in ("moving", "no_barrier")
 
 
+def longer_run(result: RunRecord) -> str:
+    """Return which duration would let the outcome be decided; with ``None`` the run had the longest one."""
+    if result.scene.duration is None:
+        return f"a duration above {result.time[-1]:g} s"
+    return "duration=None"
+
+
 DECIDED = ("separated", "stopped", "sliding")
 """Ends of a run at which nothing can change any more; see :data:`birm3d.result.report.END_REASONS`."""
 
+_TIPPED = 60.0  # deg; beyond, a leading unit may be the one whose up axis pointed below the horizontal
 _MANNERS = {
     "rests_untouched": "it came to rest before it reached the barrier",
     "rests": "it came to rest at the barrier",
@@ -96,7 +107,7 @@ def outcome_detail(result: RunRecord) -> str:
         return (
             f"birm3d {result.version}, which made the result, did not find the outcome: run its scene again"
         )
-    rolled = " and rolled over" if event.rolled_over else ""
+    rolled = f" and {_who_rolled(result)}rolled over" if event.rolled_over else ""
     if event.manner == "no_barrier":
         return f"there is no barrier{': it rolled over' if rolled else ''}"
     touched = bool(result._history.elements)
@@ -109,6 +120,12 @@ def outcome_detail(result: RunRecord) -> str:
     if event.manner == "over" and not touched:
         return f"{_MANNERS['over']} untouched: wheels meet nothing ahead of them in this model{rolled}"
     return _MANNERS[event.manner] + rolled
+
+
+def _who_rolled(result: RunRecord) -> str:
+    """Return "its trailing unit " if that alone rolled over: angles of a run are those of the leading one."""
+    lead = np.maximum(np.abs(result.roll), np.abs(result.pitch)).max()
+    return "its trailing unit " if len(result.scene.vehicle.units) > 1 and lead < _TIPPED else ""
 
 
 class Metrics(Mapping[str, Any]):
