@@ -84,9 +84,9 @@ void register_runner(py::module_& m) {
             },
             "m/s, velocity of unit 0 at the end, world")
         .def_readonly("deflection", &RunSummary::deflection,
-                      "m, greatest deflection of all trusses at the end")
+                      "m, greatest deflection of the skin at the end")
         .def_readonly("peak_deflection", &RunSummary::peak_deflection,
-                      "m, greatest deflection of all trusses during the run")
+                      "m, greatest deflection of the skin during the run")
         .def_readonly("event", &RunSummary::event, "what became of the vehicle at the barrier")
         .def_readonly("extremes", &RunSummary::extremes,
                       "the groups of extremes that were wanted, over the output instants");

@@ -771,7 +771,7 @@ class Outcome:
     @property
     def deflection(self) -> float:
         """
-        m, greatest deflection of all trusses at the end
+        m, greatest deflection of the skin at the end
         """
     @property
     def end_reason(self) -> EndReason:
@@ -796,7 +796,7 @@ class Outcome:
     @property
     def peak_deflection(self) -> float:
         """
-        m, greatest deflection of all trusses during the run
+        m, greatest deflection of the skin during the run
         """
     @property
     def run_time(self) -> float:

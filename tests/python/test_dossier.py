@@ -176,7 +176,7 @@ def test_every_number_has_the_band_of_the_class(page: Page, result: Result) -> N
     predicted = birm3d.predict(Simulation.from_scene(result.scene), 16)
     headlines = {row[0]: row[2] for row in page.table("Headline numbers")}
     for label, name, size, form in (
-        ("dynamic crush (greatest truss shortening)", "dynamic_crush", 1.0, ".3f"),
+        ("dynamic crush (greatest of the skin)", "dynamic_crush", 1.0, ".3f"),
         ("peak 50-ms mean of the force along the normal", "peak_force_50ms", 1e3, ".0f"),
     ):
         low, high = (format(end[name] / size, form) for end in (predicted.low, predicted.high))
@@ -204,7 +204,7 @@ def test_every_number_has_the_band_of_the_class(page: Page, result: Result) -> N
     scatter = {name: one for name, one in result.scene.vehicle.scatter.items() if name != "bed_fixings"}
     assert [row[1] for row in drawn] == [f"{one.median:.2f}" for one in scatter.values()]
     rows = {row[0]: row for row in page.table("This run beside 80 % of the vehicles")}
-    assert rows["dynamic crush (greatest truss shortening)"][1] == f"{result.metrics['dynamic_crush']:.4g}"
+    assert rows["dynamic crush (greatest of the skin)"][1] == f"{result.metrics['dynamic_crush']:.4g}"
     assert predicted.caution in page.texts["p"]
 
 
@@ -495,7 +495,7 @@ def test_study(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     found = summary["dynamic_crush"]
     own = crash().run().metrics["dynamic_crush"]
     numbers = (own, found.p05, found.median, found.p95, found.mean, found.standard_deviation)
-    assert rows["dynamic crush (greatest truss shortening)"] == [
+    assert rows["dynamic crush (greatest of the skin)"] == [
         *(f"{x:.4g}" for x in numbers if x is not None),
         "m",
         "3",

@@ -109,7 +109,7 @@ def test_study_card(drawn: Study) -> None:
     card = Cells(drawn._repr_html_())
     assert card.images == 1
     crush = drawn.summary()["dynamic_crush"]
-    place = card.cells.index("dynamic crush (greatest truss shortening) [m]")
+    place = card.cells.index("dynamic crush (greatest of the skin) [m]")
     assert card.cells[place + 1] == f"{crush.mean:.4g}"
     force = card.cells.index("peak barrier force along the normal, CFC 60 [kN]")
     assert float(card.cells[force + 1]) == pytest.approx(

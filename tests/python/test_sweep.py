@@ -209,7 +209,7 @@ def test_plot(study: Study) -> None:
     figure = study.plot("impact_speed", "dynamic_crush", by="impact_angle")
     axes = figure.axes[0]
     assert axes.get_xlabel() == "impact speed [m/s]"
-    assert axes.get_ylabel() == "dynamic crush (greatest truss shortening) [m]"
+    assert axes.get_ylabel() == "dynamic crush (greatest of the skin) [m]"
     assert sum(len(line.get_xdata()) for line in axes.get_lines()) == 8  # the others have failed
     with pytest.raises(ValueError, match=r"y must be one of .*; got 'dynamic_crash'"):
         study.plot("impact_speed", "dynamic_crash")

@@ -352,3 +352,14 @@ def test_a_blow_of_the_core_on_a_leaning_post_gives_no_work_back() -> None:
     assert np.diff(result.energy["impacts"]).max() > 1e3
     # The elastic part of a held post's push may be given back within a step.
     assert np.diff(result.energy["yielding"]).min() > -50.0
+
+
+@pytest.mark.parametrize("period", ["30 ms", "100 ms", "300 ms"])
+def test_the_equivalent_static_force_is_what_the_post_passes_on(car: Vehicle, period: str) -> None:
+    """No elastic system asks for more than twice the steady load, and a post passes on its plastic moment."""
+    posts = Barrier.bollards(count=3, **TUBE)
+    crash = Simulation(car, posts, units.mph(40))
+    load = birm3d.design_load(crash, natural_period=period, draws=0, progress=False)
+    row, moment = load.governing, posts.weaker.posts.plastic_moment
+    assert moment < row.equivalent_static_force * row.height <= 2.0 * moment
+    assert row.moment == pytest.approx(moment, rel=0.1)  # the inertia of the post takes and gives the rest

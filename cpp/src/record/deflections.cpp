@@ -9,7 +9,7 @@ Deflections greatest_deflections(const Vehicle& vehicle, const State& state) {
     Deflections found{least, least, least};
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const TrussMesh& mesh = vehicle.units[u].trusses;
-        for (std::size_t b = 0; b < mesh.blocks; ++b) {
+        for (std::size_t b = 0; b < mesh.skin_blocks; ++b) {
             const TrussBlockState& block = state.units[u].trusses.block[b];
             for (std::size_t i = 0; i < mesh.nodes_in(b); ++i) {
                 const double springback = mesh.springback.empty() ? 0.0 : mesh.springback[b][i];

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..barrier.kinds import Bollards
 from ..barrier.text import barrier_text
 from ..base.arguments import checked
 from ..result.result import Result
@@ -220,7 +221,9 @@ def _look(result: Result, normal: Floats, system: System) -> _Found:
 
 def _rows_of(result: Result, normal: Floats, system: System) -> list[ElementDesign]:
     separation = result.metrics.get("time_of_separation", math.inf)
-    return [element_design(load, normal, system, separation) for load in result.element_loads]
+    barrier = result.scene.barrier
+    weaker = barrier.weaker if isinstance(barrier, Bollards) else None
+    return [element_design(load, normal, system, separation, weaker) for load in result.element_loads]
 
 
 def _rows_and_blow(result: Result, normal: Floats, system: System) -> Seen:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..barrier.yielding import Weaker
 from ..base.frozen_mapping import FrozenMapping
 from ..result.element_loads import ElementLoad, overturning, resultant_height
 from ..result.result import Result
@@ -85,7 +86,8 @@ class ElementDesign:
         Greatest 50-ms mean of the overturning moment about the foot, at ground level [N m].
     equivalent_static_force : float
         Static force that asks as much of a system of the given period, ductility and damping as the
-        unfiltered load along ``direction`` [N]; it acts at ``height``.
+        unfiltered load along ``direction`` [N]; it acts at ``height``. Of a post that yields the load counts
+        up to what its plastic moment stands at ``height``: more of it accelerates the post.
     scene : mapping of str to int
         Each of the values above that are enveloped -> number of the scene that it comes from.
     band : mapping of str to (float, float)
@@ -187,11 +189,15 @@ def design_direction(load: ElementLoad, normal: Floats) -> Floats:
 
 
 def element_design(
-    load: ElementLoad, normal: Floats, system: System, separation: float = math.inf
+    load: ElementLoad,
+    normal: Floats,
+    system: System,
+    separation: float = math.inf,
+    weaker: Weaker | None = None,
 ) -> ElementDesign:
     """Return what an element has to carry in one scene; ``normal`` is that into the barrier, system in SI.
 
-    The impulse is that up to the time of ``separation`` [s].
+    The impulse is that up to the time of ``separation`` [s]. ``weaker``: what gives way of posts that yield.
     """
     if not load.touched:
         return ElementDesign(load.index, load.name)
@@ -206,6 +212,8 @@ def element_design(
     # The first row is the mean over the second one's interval.
     rows = math.ceil(min(separation / load.interval, len(load.force)))
     impulse = load.interval * load.force[1 : rows + 1].sum(axis=0)
+    height = float(resultant_height(force, moment, load.line)[row])
+    most = math.inf if weaker is None else weaker.greatest_load(height)
     return ElementDesign(
         load.index,
         load.name,
@@ -213,10 +221,12 @@ def element_design(
         impulse_vector=impulse,
         peak_force=float(lateral_level(filtered, load, normal).max()),
         force_50ms=float(level[row]),
-        height=float(resultant_height(force, moment, load.line)[row]),
+        height=height,
         direction=degrees_between(normal, direction),
         moment=float(overturning(moment, load.line).max()),
-        equivalent_static_force=resistance(load.force[1:] @ direction, load.interval, *system),
+        equivalent_static_force=resistance(
+            np.clip(load.force[1:] @ direction, -most, most), load.interval, *system
+        ),
         touched=True,
     )
 

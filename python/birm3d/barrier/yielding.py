@@ -243,6 +243,11 @@ class Weaker:
     switch_height: float
     """Of a load above the ground [m]: a lower one turns the foundation, a higher one bends the tube."""
 
+    def greatest_load(self, height: float) -> float:
+        """Return the steady force that a post stands at a height above the ground [m], in N."""
+        arm = height + self.rotation_depth
+        return self.posts.plastic_moment / arm if arm > 0.0 else math.inf
+
 
 def weaker_of(tube: Tube, height: float, foundation: Foundation | None) -> Weaker:
     """Return what gives way under a load 0.6 m above the ground, or at the top of a lower post."""

@@ -134,9 +134,9 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             shown=_kilo("peak 50-ms overturning moment of one element", "N m"),
         ),
         "dynamic_crush": Metric(
-            *("m", "crush", "greatest truss shortening during the run, also of tyres", "end"),
+            *("m", "crush", "greatest shortening of a truss of the skin during the run", "end"),
             lambda run: run.dynamic_crush,
-            shown=_metres("dynamic crush (greatest truss shortening)", headline=True),
+            shown=_metres("dynamic crush (greatest of the skin)", headline=True),
         ),
         "residual_crush": Metric(
             *(

@@ -107,7 +107,7 @@ class RunValues:
 
     @property
     def dynamic_crush(self) -> float:
-        """Greatest deflection of any truss [m]."""
+        """Greatest deflection of any truss of the skin [m]."""
         return self.outcome.peak_deflection
 
     @cached_property
@@ -140,6 +140,10 @@ def relative_to_start(scene: Scene, energy: float, start: float) -> float:
 
 
 def greatest_deflection(result: RunRecord, name: str) -> float:
-    """Greatest deflection of all units [m]."""
-    units = range(len(result.scene.vehicle.units))
-    return max(float(getattr(result.unit(u), name).max()) for u in units)
+    """Greatest deflection of the skin of all units [m].
+
+    Second trusses along the vehicle and the treads of tyres are left out: a segment's end or a kerb may drag
+    a few of their nodes by metres.
+    """
+    units = enumerate(result.scene.vehicle.units)
+    return max(float(getattr(result.unit(u), name)[unit.is_skin].max()) for u, unit in units)

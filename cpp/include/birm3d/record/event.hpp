@@ -89,7 +89,7 @@ bool is_decided(const Scene& scene, const State& state, Event& event);
 // redirected.
 void judge_at_longest(const Scene& scene, const State& state, Event& event);
 
-// Greatest deflections of all trusses of all units (m).
+// Greatest deflections of the trusses of the skin of all units, without second trusses and treads (m).
 struct Deflections {
     double now;   // the greatest deflection of the state
     double left;  // the same, less what covers spring back by without force
