@@ -5,7 +5,8 @@ from __future__ import annotations
 import birm3d
 import pytest
 from birm3d import Barrier, Result, Simulation, Vehicle, units
-from birm3d.assessment.rating_caution import level_caution, model_caution
+from birm3d.assessment.criteria import Criterion
+from birm3d.assessment.rating_caution import level_caution, model_caution, risk_lines
 
 
 @pytest.mark.parametrize("standard", ["IWA 14-1", "ISO 22343-1", "ASTM F2656", "PAS 68", "SD-STD-02.01"])
@@ -92,3 +93,21 @@ def test_roll_of_light_vehicles_at_sloped_faces_is_called_an_estimate(car: Vehic
         assert told in rated(car, Barrier.jersey(profile=profile, height=0.81), "MASH 3-10")
     for vehicle, barrier in ((car, Barrier.rigid_wall()), (car, straight), (truck, Barrier.jersey())):
         assert told not in rated(vehicle, barrier, "MASH")
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ([Criterion("THIV", 35.2, "km/h", "33 km/h", False)], ["Within 15 % of the limit", "THIV"]),
+        ([Criterion("THIV", 30.0, "km/h", "33 km/h", True)], ["Within 15 % of the limit", "THIV"]),
+        ([Criterion("THIV", 24.0, "km/h", "33 km/h", True)], []),
+        ([Criterion("H: OIV, lateral", 13.9, "m/s", "", False)], ["H: OIV, lateral"]),
+        ([Criterion("I: ridedown, lateral", 26.0, "g", "", False)], ["171 %", "I: ridedown, lateral"]),
+        ([Criterion("I: ridedown, lateral", 12.0, "g", "", True)], []),
+    ],
+)
+def test_verdicts_within_the_error_of_occupant_risk_say_so(rows: list[Criterion], said: list[str]) -> None:
+    """A New Jersey barrier failed EN 1317 TB11 by a THIV of 35 km/h without a word."""
+    text = " ".join(risk_lines(rows))
+    assert bool(text) is bool(said)
+    assert all(part in text for part in said)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,13 +11,15 @@ import numpy as np
 from .. import units
 from ..barrier.barrier import Barrier
 from ..barrier.kinds import Jersey
+from .criteria import Criterion
+from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H
 from .vehicles import HEAVY_KG
 
 if TYPE_CHECKING:
     from ..result import Result
     from .roadside import RoadsideStandard, RoadsideTest
 
-__all__ = ["level_caution", "model_caution", "roadside_lines", "tipping_lines"]
+__all__ = ["level_caution", "model_caution", "risk_lines", "roadside_lines", "tipping_lines"]
 
 _BODY = (
     "Indicative: computed, not tested. The vehicle is one rigid body, or two, with a crushable skin: a load "
@@ -60,6 +62,20 @@ _LEAST_INCHES = {"TL-1": 27.0, "TL-2": 27.0, "TL-3": 29.0, "TL-4": 36.0, "TL-5":
 
 EN 1317 has none.
 """
+_SPEED_ERROR = 0.15  # of OIV in the two tests of tests/validation/ratings.md: -2 and +15 %
+_RISK_LIMITS = {
+    "THIV": THIV_LIMIT_KM_H,
+    "H: OIV, longitudinal": FLAIL_LIMITS["MASH"].velocity[1],
+    "H: OIV, lateral": FLAIL_LIMITS["MASH"].velocity[1],
+}
+_NEAR = (
+    "Within {error:.0f} % of the limit, which is the model's error in tests: {names}. A pass or a fail by "
+    "that is no verdict."
+)
+_RIDEDOWN = (
+    "Computed ridedown was 76 and 171 % above two tests: a fail by {names} is no verdict. It rests on peaks "
+    "of 10 ms."
+)
 _OLDER = {"TL-4": "; 32 in by NCHRP 350"}
 _ROUNDED = 0.01  # m; heights are given in whole centimetres, as 0.91 m for 36 in
 
@@ -91,6 +107,21 @@ def roadside_lines(result: Result, standard: RoadsideStandard, test: RoadsideTes
     if test.vehicle.code == "36000T":
         yield _TANK
     yield from tipping_lines(result)
+
+
+def risk_lines(rows: Iterable[Criterion]) -> Iterator[str]:
+    """Yield what the criteria of occupant risk are worth, where the model's error decides on them."""
+    near, beyond = [], []
+    for row in rows:
+        most = _RISK_LIMITS.get(row.name)
+        if most is not None and isinstance(row.value, float) and abs(row.value / most - 1.0) < _SPEED_ERROR:
+            near.append(row.name)
+        if "ridedown" in row.name and row.passed is False:
+            beyond.append(row.name)
+    if near:
+        yield _NEAR.format(names=", ".join(near), error=100.0 * _SPEED_ERROR)
+    if beyond:
+        yield _RIDEDOWN.format(names=", ".join(beyond))
 
 
 def _is_sloped(barrier: Barrier) -> bool:

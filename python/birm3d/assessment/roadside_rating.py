@@ -24,7 +24,7 @@ from .measures import (
 )
 from .occupant import occupant_risk
 from .rating import Rating, first_reached
-from .rating_caution import level_caution, model_caution, roadside_lines
+from .rating_caution import level_caution, model_caution, risk_lines, roadside_lines
 from .roadside import RoadsideStandard, RoadsideTest
 from .vehicles import HEAVY_KG, StandardVehicle, standard_vehicle
 
@@ -79,7 +79,12 @@ def rate_roadside(
         judged[0].passed is True,
         (*rows, reported),
         " ".join(
-            [standard.caution, *roadside_lines(result, standard, test), model_caution(result.scene.barrier)]
+            [
+                standard.caution,
+                *risk_lines(judged),
+                *roadside_lines(result, standard, test),
+                model_caution(result.scene.barrier),
+            ]
         ),
         test.vehicle.code,
     )
