@@ -18,8 +18,8 @@ the test; the broadside pickup by `with_gvw`, aimed at its mass centre. Marks: 1
 deviation of 15 cars (pickups scatter by twice that); 20 % in load and occupant risk of the one broadside
 test.
 
-What the model can not do here: the sill, the floor's cross members and the frame are one law of a door; a
-pole on the frame or off it is the same. One crush is measured, at one speed: force and history are not."""
+What the model can not do here: one truss law stands for sill, cross members and frame. So the
+result does not depend on whether the pole meets the frame. One crush is measured, at one speed: force and history are not."""
 
 CRUSH, LOAD = 0.15, 0.20
 
