@@ -66,3 +66,14 @@ def test_the_table_of_all_builds_has_the_hashes_that_the_test_holds() -> None:
     assert len({row["build"] for row in rows}) >= 5
     wrong = {row["scene"]: row["hash"] for row in rows if HASHES[row["scene"]] != row["hash"]}
     assert not wrong, "run bench_determinism.py --save, or replace the constants"
+
+
+def test_pages_say_how_many_rows_and_builds_the_table_has() -> None:
+    with (PROGRAM.parent / "results/determinism/hashes.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    builds = {7: "seven", 8: "eight"}[len({row["build"] for row in rows})]
+    readme = (PROGRAM.parents[2] / "README.md").read_text(encoding="utf-8")
+    page = (PROGRAM.parent / "README.md").read_text(encoding="utf-8")
+    assert f"the same state in all {len(rows)} runs of {builds} builds" in readme
+    assert f"The table has {builds} builds" in page
+    assert f"in all {len(rows)} rows" in page
