@@ -83,8 +83,7 @@ void register_runner(py::module_& m) {
                 return std::tuple(v.x(), v.y(), v.z());
             },
             "m/s, velocity of unit 0 at the end, world")
-        .def_readonly("deflection", &RunSummary::deflection,
-                      "m, greatest deflection of the skin at the end")
+        .def_readonly("deflection", &RunSummary::deflection, "m, greatest deflection of the skin at the end")
         .def_readonly("peak_deflection", &RunSummary::peak_deflection,
                       "m, greatest deflection of the skin during the run")
         .def_readonly("event", &RunSummary::event, "what became of the vehicle at the barrier")
