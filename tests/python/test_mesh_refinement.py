@@ -52,8 +52,8 @@ def test_preset(bench: ModuleType) -> None:
     assert found.order(found.velocity_change) > 1.2
     found = bench.refine("pickup", bench.preset("pickup", "wall"), bench.DENSITIES, 3)
     assert (found.velocity_change < 1e-4).all()
-    # 0.5 to 4 times the elements, and no scalar of any run moves by more than 1 %. Crush is that of the node that is
-    # crushed most, at a corner of the front: it depends on where nodes stand there (measured: 1.5 %).
+    # 0.5 to 4 times the elements, and no scalar of any run moves by more than 1 %. Crush is that of the node
+    # that is crushed most, at a corner of the front: it depends on where nodes stand there (measured: 1.5 %).
     for j, name in enumerate(bench.METRICS):
         most = 0.02 if name == "dynamic_crush" else 0.01
         assert (np.ptp(found.values[:, :, j], axis=0) < most * found.values[:, :, j].min(axis=0)).all(), name

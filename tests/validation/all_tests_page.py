@@ -15,7 +15,8 @@ _ROUNDING = 1e-9
 
 INTRODUCTION = """# Predicted beside given tests
 
-Written by `python tests/validation/all_tests.py` from data. The texts are those of `kind_*.py`; no number of a table is typed in.
+Written by `python tests/validation/all_tests.py` from data. The texts are those of
+`kind_*.py`; no number of a table is typed in.
 
 One table for each kind of test: measured, predicted, error. Which preset stands for a vehicle follows from
 one rule (`stand_in.py`: the preset of the class that is nearest in mass, with the mass of the test); no row

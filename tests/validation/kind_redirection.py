@@ -17,8 +17,8 @@ TEXT = """Vehicles: the stand-in of the class with the test's mass. Barriers: ri
 measured force, exit angle or roll of these tests could be read in a source; forces as commonly
 reported, whose sources are not at hand, are printed apart. What can be checked: the change of momentum across
 the barrier when the vehicle has left it, or at the end of the run, over the momentum towards it, m v
-sin(angle). It is 1 + e. No test of the table gives it. A restitution e from 0 to 0.3 is taken to be right, so the
-column "measured" has 1.15, which is expected and not measured. Whether the vehicle is contained and
+sin(angle). It is 1 + e. No test of the table gives it. A restitution e from 0 to 0.3 is taken to be right,
+so the column "measured" has 1.15, which is expected and not measured. Whether the vehicle is contained and
 stays upright (1: yes, 0: no) is compared with what is commonly reported of the tests. The wall's own impulse
 is in the table of computed figures: tyres that press a vehicle on the wall add to it.
 

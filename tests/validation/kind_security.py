@@ -16,12 +16,13 @@ TEXT = """Vehicles: the stand-in for a truck of the test's mass; pitch rows are
 lower edge, as `birm3d.rate` has it by ASTM F2656; a limit is met at or below it. A negative
 reading is before the rear face. Contained: 1, else 0.
 
-Left out: MIL-8IN-B and -C and JERSEY-4000 (their foundations or sections failed: the posts of this table are rigid),
+Left out: MIL-8IN-B and -C and JERSEY-4000 (their foundations or sections failed; posts of this table are
+rigid),
 TT203, TT210, DSC7000 and RSA-SM (no size of what was hit was found).
 
 Posts are rigid here, although the program can let them yield: no foundation's moment is published. In
-DSC635 post and foundation moved. So these rows are checks. "With a sliding bed" is `cargo_truck` by `with_sliding_bed()`:
-its fixings hold 17 times the weight of bed and load. At these posts it slides by millimetres, and the
+DSC635 post and foundation moved. So these rows are checks. "With a sliding bed" is `cargo_truck`
+by `with_sliding_bed()`: its fixings hold 17 times the weight of bed and load. At these posts it slides by millimetres, and the
 reading stays 2.4 to 2.7 m below the limits, which are met for the wrong reason. "Weak fixings" hold a
 quarter of that. The bed then slides by 2.5 to 2.8 m, further than a frame carries it, and the truck tips
 over its nose: these rows show a trend only."""

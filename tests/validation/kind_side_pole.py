@@ -19,7 +19,8 @@ deviation of 15 cars (pickups scatter by twice that); 20 % in load and occupant 
 test.
 
 What the model can not do here: one truss law stands for sill, cross members and frame. So the
-result does not depend on whether the pole meets the frame. One crush is measured, at one speed: force and history are not."""
+result does not depend on whether the pole meets the frame. One crush is measured, at one
+speed: force and history are not."""
 
 CRUSH, LOAD = 0.15, 0.20
 
