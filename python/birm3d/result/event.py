@@ -2,8 +2,11 @@
 
 The core finds it while the run goes on (:class:`birm3d._core.Event`). So it depends neither on the duration,
 once that is long enough, nor on histories. The vehicle *has left for good* when it moves away from every
-element of the barrier so that no rotation brings it back. A vehicle that goes on past the barrier must also
-be out of its reach. What it does then decides, except for rolling over, which counts over the whole run:
+element of the barrier so that no rotation brings it back. Of a free-standing chain the box around it counts.
+A vehicle that goes on past the barrier must also be out of its reach. One that skids beside an end of the
+barrier is followed until its tyres turn its path no more.
+
+What it does then decides, except for rolling over, which counts over the whole run:
 
 ``overridden``
     It left past the barrier's line, or rests there. While its mass centre was past the line, the top of an
@@ -11,6 +14,7 @@ be out of its reach. What it does then decides, except for rolling over, which c
     over which it crossed the line.
 ``passed``
     It left past the line, or towards it beyond the barrier's end, or rests behind the barrier out of reach.
+    So does one that was stopped or redirected, and skidded round an end of the barrier afterwards.
 ``rolled_over``
     Neither of these, and an up axis was beyond 90 degrees from the vertical at some step. Vehicles that start
     more than 45 degrees from upright are not judged.
