@@ -60,3 +60,22 @@ def test_a_skid_far_from_the_ends_does_not_lengthen_the_run() -> None:
     )
     assert long.outcome == endless.outcome == "redirected"
     assert long.time[-1] == pytest.approx(endless.time[-1], abs=0.01)
+
+
+def test_the_sentence_says_which_unit_rolled_over() -> None:
+    """The trailer rolled by 98 degrees, and the greatest roll, of the tractor, was 4.5."""
+    truck = Vehicle.preset("mash_36000v")
+    result = Simulation(truck, Barrier.jersey(length=20.0), 9.2, 68.0, -1.24).run()
+    assert result.outcome == "rolled_over"
+    assert result.metrics["max_roll"] < 60.0
+    assert abs(result.unit(1).roll).max() > 90.0
+    assert result.outcome_detail.endswith("and its trailing unit rolled over")
+
+
+def test_an_undecided_run_of_the_longest_duration_asks_for_a_longer_one() -> None:
+    """It asked for duration=None, which the run had."""
+    truck = Vehicle.preset("mash_10000s")
+    result = Simulation(truck, Barrier.rigid_wall(height=0.3), units.km_h(90.0), 15.0).run()
+    assert result.end_reason == "longest"
+    with pytest.raises(ValueError, match=r"\(a duration above 5 s\), got one that ends at 5 s"):
+        rate(result, "MASH")
