@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from pathlib import Path
 
 import birm3d
 import numpy as np
@@ -106,3 +107,11 @@ def test_the_search_for_a_height_tells_where_to_stop() -> None:
         warnings.simplefilter("error", LowBarrierWarning)
         found = birm3d.least_height(crash, (0.3, 1.0), points=3, resolution=0.2, offsets=[0.0], draws=0)
     assert "do not go below 0.78 m" in found.caution
+
+
+def test_the_validation_page_has_the_heights_of_fronts() -> None:
+    page = Path(__file__).resolve().parents[2] / "docs/pages/validation.md"
+    text = " ".join(page.read_text(encoding="utf-8").split())
+    for name in ("cargo_truck", "pickup", "van_3500", "passenger_car"):
+        height = Vehicle.preset(name).units[0]._strong_height
+        assert f"{height:.2f} m for `{name}`" in text
