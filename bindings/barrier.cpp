@@ -142,7 +142,10 @@ void register_barrier(py::module_& m) {
             "The elements where they are posts that yield, else none.")
         .def_property_readonly(
             "normal", [](const Barrier& barrier) { return copy(barrier.normal()); },
-            "(3,) of the barrier's line, towards the traffic, world axes");
+            "(3,) of the barrier's line, towards the traffic, world axes")
+        .def_property_readonly(
+            "top", &Barrier::top,
+            "greatest height above the ground (m); infinite for half-spaces and endless posts");
 }
 
 }  // namespace birm3d::bindings

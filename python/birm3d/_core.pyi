@@ -71,6 +71,11 @@ class Barrier:
         The elements where they are free-standing, else none.
         """
     @property
+    def top(self) -> float:
+        """
+        greatest height above the ground (m); infinite for half-spaces and endless posts
+        """
+    @property
     def yielding_posts(self) -> list[Segment]:
         """
         The elements where they are posts that yield, else none.

@@ -115,3 +115,20 @@ def test_the_validation_page_has_the_heights_of_fronts() -> None:
     for name in ("cargo_truck", "pickup", "van_3500", "passenger_car"):
         height = Vehicle.preset(name).units[0]._strong_height
         assert f"{height:.2f} m for `{name}`" in text
+
+
+@pytest.mark.parametrize(
+    "barrier",
+    [
+        Barrier.rigid_wall(width=4.0, height=0.8, heading=30.0),
+        Barrier.rigid_wall(width=4.0, height=0.6, edge_radius=0.0, origin=(1.0, 2.0, 0.3)),
+        Barrier.bollards(count=3, height=0.7),
+        Barrier.bollards(count=2, height=0.9, wall_thickness=0.016),
+        Barrier.jersey(profile="f_shape", length=6.0),
+        Barrier.planter(height=0.75),
+    ],
+    ids=lambda barrier: barrier.text,
+)
+def test_the_top_is_that_of_what_is_drawn(barrier: Barrier) -> None:
+    surfaces = barrier.surfaces(100.0, (-1.0, 1.0))
+    assert barrier._top == pytest.approx(max(float(points[:, 2].max()) for points, _ in surfaces), abs=1e-12)

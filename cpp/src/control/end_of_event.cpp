@@ -27,17 +27,6 @@ Vec3 from_hull(const Shape& shape, const Box& box, const Vec3& p) {
     return from_box(box, p);
 }
 
-// The box around a box whose own axes are turned by `rotation` and begin at `origin`. A half width may be infinite.
-Box turned(const Box& box, const Mat3& rotation, const Vec3& origin) {
-    constexpr double aligned = 1e-9;  // 0 times infinity would be NaN
-    Box around{origin + rotation * box.center, Vec3::Zero()};
-    for (int axis = 0; axis < 3; ++axis)
-        for (int own = 0; own < 3; ++own)
-            if (std::abs(rotation(axis, own)) > aligned)
-                around.half[axis] += std::abs(rotation(axis, own)) * box.half[own];
-    return around;
-}
-
 // The box around two boxes.
 Box around_both(const Box& one, const Box& other) {
     Box both = one;
@@ -57,8 +46,9 @@ Box box_of_structure(const Scene& scene, std::size_t i) {
     Box box = bounds(first.shape);
     for (std::size_t j = i + 1; j < scene.obstacles.size() && scene.obstacles[j].structure == i; ++j) {
         const Obstacle& part = scene.obstacles[j];
-        box = around_both(box, turned(bounds(part.shape), first.rotation.transpose() * part.rotation,
-                                      first.rotation.transpose() * (part.position - first.position)));
+        box = around_both(box, bounds(part.shape)
+                                   .placed(first.rotation.transpose() * part.rotation,
+                                           first.rotation.transpose() * (part.position - first.position)));
     }
     return box;
 }
@@ -114,8 +104,8 @@ std::vector<Box> boxes_of_barrier(const Scene& scene, const State& state, const 
     for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
         if (scene.obstacles[i].structure != i) continue;
         const Pose pose = pose_of(scene, i, state);
-        const Box box = turned(box_of_structure(scene, i), axes.transpose() * pose.rotation,
-                               axes.transpose() * pose.position);
+        const Box box = box_of_structure(scene, i).placed(axes.transpose() * pose.rotation,
+                                                          axes.transpose() * pose.position);
         if (boxes.empty() || !scene.slides())
             boxes.push_back(box);
         else
@@ -208,8 +198,8 @@ bool has_left_chain(const Scene& scene, const State& state, std::size_t u) {
     std::optional<Box> chain;
     for (std::size_t i = 0; i < state.moving_elements.size(); ++i) {
         const Pose pose = pose_of(scene, i, state);
-        const Box segment = turned(bounds(scene.obstacles[i].shape), axes.transpose() * pose.rotation,
-                                   axes.transpose() * pose.position);
+        const Box segment = bounds(scene.obstacles[i].shape)
+                                .placed(axes.transpose() * pose.rotation, axes.transpose() * pose.position);
         chain = chain ? around_both(*chain, segment) : segment;
     }
     const BodyState& body = state.units[u].body;

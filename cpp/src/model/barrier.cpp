@@ -1,5 +1,6 @@
 #include "birm3d/model/barrier.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -110,6 +111,19 @@ Barrier Barrier::pole(double friction, const Vec3& origin, double heading, doubl
 
 Vec3 Barrier::normal() const {
     return {-std::cos(heading), -std::sin(heading), 0.0};
+}
+
+double Barrier::top() const {
+    double top = -infinity;
+    for (const Element& element : elements) {
+        if (const auto* post = std::get_if<Post>(&element.shape)) {  // its bounds are endless
+            top = std::max(top, origin.z() + element.position.z() + post->height);
+            continue;
+        }
+        const Box box = bounds(element.shape).placed(element.rotation(), element.position);
+        top = std::max(top, origin.z() + box.center.z() + box.half.z());
+    }
+    return top;
 }
 
 }  // namespace birm3d

@@ -27,8 +27,6 @@ Point: TypeAlias = "tuple[float, float, float]"
 Surface: TypeAlias = "tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]"
 """Vertices (n, 3), world axes [m], and triangles (m, 3), counter-clockwise seen from outside."""
 
-_ENDLESS = 1e6  # m: barriers without end are taken as so high
-
 
 @checked
 @dataclass(frozen=True)
@@ -101,10 +99,8 @@ class BarrierKind:
 
     @cached_property
     def _top(self) -> float:
-        """Greatest height above the ground [m]; infinite where it has no end."""
-        surfaces = self.surfaces(_ENDLESS, (-1.0, 1.0))
-        top = max(float(points[:, 2].max()) for points, _ in surfaces)
-        return top if top < 0.5 * _ENDLESS else math.inf
+        """Greatest height above the ground [m]; 100 m or infinite where it has no end."""
+        return self.core.top
 
     @cached_property
     def _past(self) -> tuple[float, float, float]:

@@ -1,6 +1,7 @@
 // A box along the axes, around some points: what the broad phase tests before it looks at them one by one.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 #include "birm3d/base/types.hpp"
@@ -20,6 +21,17 @@ struct Box {
     // The box around both.
     Box with(const Box& other) const {
         return with(other.center - other.half).with(other.center + other.half);
+    }
+
+    // The box around this one, whose axes are turned by `rotation` and begin at `origin`. Half widths may be infinite.
+    Box placed(const Mat3& rotation, const Vec3& origin) const {
+        constexpr double aligned = 1e-9;  // 0 times infinity would be NaN
+        Box around{origin + rotation * center, Vec3::Zero()};
+        for (int axis = 0; axis < 3; ++axis)
+            for (int own = 0; own < 3; ++own)
+                if (std::abs(rotation(axis, own)) > aligned)
+                    around.half[axis] += std::abs(rotation(axis, own)) * half[own];
+        return around;
     }
 
     // No point of it is further from the origin (m).
