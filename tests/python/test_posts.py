@@ -161,20 +161,33 @@ def test_a_thin_post_meets_no_core_at_56_km_h() -> None:
         assert result.metrics["max_displacement"] < 1.40  # the fire wall is 1.37 to 1.43 m behind the nose
 
 
-@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-def test_the_energy_closes_where_posts_pass_a_whole_panel() -> None:
-    """All its nodes are let go in one step. Once their trusses took no work in it: 0.2 % was lost."""
+def truck_over_low_posts(tolerance: float) -> Simulation:
+    """A truck that rides over posts of 0.43 m, with a yaw."""
     truck = Vehicle.preset("cargo_truck", mesh_density=0.3)
     row = Barrier.bollards(count=12, diameter=0.0643, height=0.4344, spacing=0.2538, friction=0.0)
-    crash = Simulation(
+    return Simulation(
         truck.with_gvw(1.19671 * truck.mass),
         row,
         31.2895,
         impact_offset=-1.12669,
         impact_yaw=-18.674,
         duration=0.2,
-        settings=Settings(tolerance=0.02),
+        settings=Settings(tolerance=tolerance),
     )
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+@pytest.mark.parametrize(("tolerance", "most"), [(0.02, 5e-4), (1e-3, 5e-5)])
+def test_the_energy_closes_where_posts_let_go_of_a_panel(tolerance: float, most: float) -> None:
+    """Nodes that were let go and met again in one step lost their work: 2.8e-3 and 7e-4."""
+    crash = truck_over_low_posts(tolerance)
     crash.run()
     balances = crash._core.balances
-    assert balances.energy.size < 5e-4 * balances.at_disposal, "measured: 1e-4"
+    assert balances.energy.size < most * balances.at_disposal, "measured: 1.5e-4 and 1.2e-5"
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_posts_let_go_a_front_that_has_risen_above_them() -> None:
+    """They held the skin on: 23.1 m/s were left."""
+    result = truck_over_low_posts(1e-3).run()
+    assert result.final_velocity[0] == pytest.approx(25.4, abs=0.3)

@@ -79,7 +79,7 @@ HASHES = {
     "minivan on its side": "393c2211dbd5592e",
     "car, corner of a planter": "434324bc38587184",
     "pickup, end of a wall": "a3a54cd237041075",
-    "truck, bollards that yield": "244d2629e89bbe06",
+    "truck, bollards that yield": "5d86df8a4e2a0752",
     "finite-element car, wall": "9be0600936bc9b61",
     "finite-element truck, wall": "f2516accc663599a",
 }

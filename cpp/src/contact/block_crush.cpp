@@ -107,7 +107,6 @@ void crush_stopped(const ContactPass& pass, ContactState& state) {
     find_nearest_surface(pass, state.block);
     stand_on_stopping_faces(pass, state.block);
     crush_on(pass, several_obstacles, state.block, state.sums.several);
-    count_leaving(state.block, state.sums);
     add_friction_and_distribute(pass, several_obstacles, state.block, state.sums);
 }
 

@@ -235,14 +235,14 @@ bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBloc
     return !block.stopped.empty() && !distant.were_met;
 }
 
-// Counts the work on their trusses up to their release. What an indentation releases may be held again, see count_leaving().
+// Counts the work on their trusses up to their release.
 void stop_nodes(const ContactPass& pass, ContactBlock& block, ContactSums& sums) {
     TrussBlockState& nodes = block.alter();
     nodes.touching = true;
     for (const StoppedNode& node : block.stopped) {
         if (!node.stays) {
             set_truss(node, nodes);
-            if (!node.leaves) sums.several.released_work += node.work;
+            sums.several.released_work += node.work;
         }
         for (std::size_t k = 0; k < pass.near.size(); ++k) {
             const auto place = std::lower_bound(block.reachable.begin(), block.reachable.end(), k);
@@ -253,11 +253,6 @@ void stop_nodes(const ContactPass& pass, ContactBlock& block, ContactSums& sums)
     }
     for (const std::size_t k : block.reachable)
         sums.obstacles[k].reached = true;
-}
-
-void count_leaving(const ContactBlock& block, ContactSums& sums) {
-    for (const StoppedNode& node : block.stopped)
-        if (node.leaves && block.end->force[node.node_index] == 0.0) sums.several.released_work += node.work;
 }
 
 }  // namespace birm3d

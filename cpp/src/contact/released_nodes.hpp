@@ -25,7 +25,4 @@ bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBloc
 // Places the stopped nodes and adds the obstacles that they meet there to those that the block reaches.
 void stop_nodes(const ContactPass& pass, ContactBlock& block, ContactSums& sums);
 
-// Counts the work on the trusses of nodes that an indentation released, and that nothing holds as the block has been crushed anew.
-void count_leaving(const ContactBlock& block, ContactSums& sums);
-
 }  // namespace birm3d

@@ -31,7 +31,6 @@ struct IndentationNumbers {
     // Added to the overlap of post and panel in height: zero, or a great length where the vehicle is tilted so far that the
     // panel has no lower edge (m).
     double edge_allowance;
-    double least_overlap;    // of panel and post, at which nodes that follow are let go (m)
     double tilt;             // e of the axis for each unit of l
     double radius, stretch;  // the post's, and that of its section with a plane of e and w over it
     double surface;          // into, of the outermost node of the panel

@@ -109,13 +109,12 @@ Indentation::Indentation(const TopEdge& edge, const Placement& stands, const Pan
     edge_slope = line_e / line_w;
     face_slope = edge_slope - tilt * top_slope;
     is_face = true;
-    least_overlap = -infinity;
     grip = 1.0;
     radius = top_rate = flank_low = flank_high = steep_arc = rise_there = 0.0;
 }
 
 Indentation::Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_,
-                         double edge_flank_factor, bool yields)
+                         double edge_flank_factor)
     : length(length_) {
     const Vec3& e = panel.inward;
     const Vec3 axis_up = stands.direction_from_own(Vec3::UnitZ());
@@ -124,7 +123,6 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
     const double leaning = axis_up.dot(e), upright = per_stretch;
     radius = post.radius;
     least_w = -radius, most_w = radius;
-    least_overlap = yields ? 0.0 : -infinity;
     const double rim = std::sqrt(leaning * leaning + rounded * rounded);
     top = post.height * upright + radius * rim;
     top_rate = radius * leaning / rim - post.height * tilt;

@@ -42,8 +42,8 @@
 // face crushes what is deeper beside it.
 //
 // A post or a face draws in skin above its top only where the panel comes down to it. Below a node the panel ends at its lowest
-// node there (heights_above_edge). If that is above the top, as a load bed's side is beside a low wall, nothing begins to hold the
-// node. A post that yields also lets go nodes where its top has sunk below the panel: a vehicle that pushes it over leaves it.
+// node there (heights_above_edge). If that is above the top, as a load bed's side is beside a low wall, nothing holds the node. A
+// panel that rises above the top leaves the post or the face, as a vehicle does that pushes a post over.
 //
 // A vertical face with a top edge (top_edge.hpp) holds the skin before it, and draws in the skin above its top:
 //   D(w, l) = E(w) - s (l - top)+
@@ -71,9 +71,9 @@
 namespace birm3d {
 
 struct Indentation : IndentationNumbers {
-    // `edge_flank_factor`: see Settings. `yields`: does the post tilt under load?
+    // `edge_flank_factor`: see Settings.
     Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_,
-                double edge_flank_factor, bool yields = false);
+                double edge_flank_factor);
 
     Indentation(const TopEdge& edge, const Placement& stands, const Panel& panel, double length_);
 

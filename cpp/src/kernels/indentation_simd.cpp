@@ -102,14 +102,14 @@ BIRM3D_INLINE Packet gap_of_loaded(const IndentationNumbers& indentation, const 
     return where_above(zero, followed.gap, outward, unless_held);
 }
 
-// 1 where the indentation extends over a node, else 0: D is beyond the panel's outermost node there, and the panel still comes down
-// to a post that yields.
+// 1 where the indentation extends over a node, else 0: D is beyond the panel's outermost node there, and the panel comes down to
+// the post.
 BIRM3D_INLINE Packet extends_over(const IndentationNumbers& indentation, const KnownFaces& known,
                                   const NodePlace& place, const FollowedPlace& followed, std::size_t i) {
     const Packet zero = 0.0, one = 1.0, surface = indentation.surface,
                  holds = indentation.grip > 0.0 ? one : zero;
     const Packet beside = where_beside_face(indentation, known, place, followed, zero, holds, i),
-                 reached = where_above(place.overlap, indentation.least_overlap, beside, zero);
+                 reached = where_above(place.overlap, zero, beside, zero);
     return where_above(place.e - followed.gap, surface, reached, zero);
 }
 

@@ -46,8 +46,8 @@ bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& 
 Indentation indentation_by(const Obstacle& obstacle, const Placement& stands, const Panel& panel,
                            const TrussMesh& mesh, const Settings& settings) {
     if (obstacle.top_edge) return {*obstacle.top_edge, stands, panel, mesh.indentation_length};
-    return {std::get<Post>(obstacle.shape), stands,         panel, mesh.indentation_length,
-            settings.edge_flank_factor,     obstacle.yields};
+    return {std::get<Post>(obstacle.shape), stands, panel, mesh.indentation_length,
+            settings.edge_flank_factor};
 }
 
 double gap_of_panel(const Indentation& indentation, std::size_t panel, const TrussMesh& mesh,

@@ -107,7 +107,6 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
                                  : joined ? obstacles[i - 1].structure
                                           : i;
         obstacles[i].element = whole.value_or(i);
-        obstacles[i].yields = tilts();
         if (barrier->elements[i].draws_in_above)
             obstacles[i].top_edge = top_edge_of(std::get<Prism>(obstacles[i].shape));
     }

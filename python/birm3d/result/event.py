@@ -101,6 +101,7 @@ _MANNERS = {
     "rests_beyond": "it came to rest behind the barrier",
     "over": "it went over the top of the barrier",
 }
+_CLEARLY_NEARING = -1.0  # deg, of the path at the last contact
 _AT_SEPARATION = ("time_of_separation", "exit_speed", "exit_angle", "restitution")
 
 
@@ -123,7 +124,16 @@ def outcome_detail(result: RunRecord) -> str:
         return f"it passed {past}, {'touching it' if touched else 'untouched'}{rolled}"
     if event.manner == "over" and not touched:
         return f"{_MANNERS['over']} untouched: wheels meet nothing ahead of them in this model{rolled}"
-    return _MANNERS[event.manner] + rolled
+    return _MANNERS[event.manner] + _nearing(result) + rolled
+
+
+def _nearing(result: RunRecord) -> str:
+    """Return a clause for a vehicle whose exit angle is negative: only its tyres turned it away later."""
+    metrics = metrics_of(result)
+    if "exit_angle" not in metrics or metrics["exit_angle"] > _CLEARLY_NEARING:
+        return ""
+    angle = metrics["exit_angle"]
+    return f", though at the last contact its mass centre still neared the barrier, at {-angle:.1f} degrees"
 
 
 def _who_rolled(result: RunRecord) -> str:

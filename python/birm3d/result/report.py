@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..barrier.barrier import Barrier
     from .analysis import RunAnalysis
 
-__all__ = ["END_REASONS", "report"]
+__all__ = ["END_REASONS", "fold_text", "report"]
 
 END_REASONS = {
     "separated": "the vehicle has left the barrier and can not come back",
@@ -30,6 +30,8 @@ END_REASONS = {
     "running": "the run is not over yet",
 }
 """Why a run ended, in words."""
+
+_UNITS_MEET = 90.0  # deg between tractor and trailer: a side of the one stands before the front of the other
 
 
 def report(result: RunAnalysis) -> str:
@@ -67,7 +69,7 @@ def report(result: RunAnalysis) -> str:
         lines.append(
             f"  {vehicle.joint.kind}: peak 50-ms mean of the force "
             f"{metrics['peak_joint_force_50ms'] / 1e3:.3g} kN, greatest articulation angle "
-            f"{metrics['max_articulation_angle']:.1f} deg"
+            f"{metrics['max_articulation_angle']:.1f} deg{fold_text(metrics['max_articulation_angle'])}"
             + (_slip_text(metrics["bed_slip"]) if vehicle.slides else "")
         )
     if "barrier_deflection" in metrics:
@@ -87,6 +89,11 @@ def report(result: RunAnalysis) -> str:
         *(f"  {line}" for line in omitted_lines(result)),
     ]
     return "\n".join(lines)
+
+
+def fold_text(angle: float) -> str:
+    """Return a clause for units that fold so far that they would meet [deg]."""
+    return ", so that the units would meet, which is not computed" if angle > _UNITS_MEET else ""
 
 
 def _slip_text(slip: float) -> str:

@@ -39,7 +39,6 @@ struct Obstacle {
     // are its own index where it stands alone.
     std::size_t structure = 0, element = 0;
     std::optional<TopEdge> top_edge = {};  // of a face that draws in the skin above it
-    bool yields = false;                   // is it a post that tilts under load?
 };
 
 struct Scene {
