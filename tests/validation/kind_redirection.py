@@ -22,9 +22,7 @@ so the column "measured" has 1.15, which is expected and not measured. Whether t
 stays upright (1: yes, 0: no) is compared with what is commonly reported of the tests. The wall's own impulse
 is in the table of computed figures: tyres that press a vehicle on the wall add to it.
 
-What the model can not do here: wheels of the 8-t truck are held straight. They press it on the barrier, and
-it slides along for seconds. With front wheels that follow their travel the computed truck overturns,
-against what is reported. Rear tyres of other trucks turn them away from the barrier while they stand on two
+What the model can not do here: rear tyres of trucks turn them away from the barrier while they stand on two
 wheels. So the barrier's own impulse can be less than the change of momentum. A near-side tread that climbs
 a sloped face lifts the body, not its own wheel, and stays on. The load of a trailer does not shift. The
 10-t truck has no camber thrust, and leans on the barrier for more than a second."""
@@ -63,13 +61,14 @@ def rows(task: str) -> list[Row]:
     )
     towards = normal_momentum(scene.vehicle.mass, scene.impact_speed, scene.impact_angle)
     change = 1.0 - across / towards
+    upright = float(fact["upright"])
     contained = float(result.outcome in ("redirected", "stopped", "undecided"))
     middle = 0.5 * sum(NORMAL_IMPULSE)
     found = [
         Row(
             task, who, "change of momentum across / m v sin a", "-", middle, *NORMAL_IMPULSE, change, "check"
         ),
-        Row(task, who, "contained and upright", "-", 1.0, 1.0, 1.0, contained, judged=False),
+        Row(task, who, "contained and upright", "-", upright, upright, upright, contained, judged=False),
     ]
     if fact["force_50ms_kN"]:
         force = 1e3 * float(fact["force_50ms_kN"])

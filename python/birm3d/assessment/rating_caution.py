@@ -40,9 +40,10 @@ _TIPS = (
     "upright."
 )
 _ROLLS_LITTLE = (
-    "Springs and camber thrust are estimates: computed vehicles may roll too little. The 10000S overturns at "
-    "a New Jersey barrier of 0.81 m, as published. It stays upright at 0.91 m and 15 deg, as commonly "
-    "reported; at 16 deg it tips late. A heavy vehicle that is computed upright may roll over in a test."
+    "Springs, steering and camber thrust are estimates: computed vehicles may roll too little. At a New "
+    "Jersey barrier of 0.81 m the 10000S overturns at 16 deg, as published, but stays upright at 15 deg. "
+    "At 0.91 and 1.07 m it stays upright, as commonly reported. A heavy vehicle that is computed upright may "
+    "roll over in a test."
 )
 _TANK = (
     "Test 6-12 asks for a tractor with a tank trailer. A van trailer in its place, as the package has it, "
