@@ -252,12 +252,15 @@ class VehicleVariants(VehicleData):
         zone with an envelope becomes one with a knee when ``k_initial``, ``knee`` and ``k_hardening`` are
         given, and the other way round when ``envelope`` is. Such a law is a new one, and so is one of which
         all of Fig. 3 but ``f_max`` is given. The ``elastic_recovery`` and the tail of the old one do not go
-        on, unless they are given too.
+        on, unless they are given too. ``scale`` multiplies all stresses of the zone.
         """
         if name not in self.zones:
             known = ", ".join(self.zones) or "none: the vehicle was made from arrays"
             raise ValueError(f"zone must be one of {known}; got {name!r}")
-        known = ", ".join((*KNEE, "k_unloading", "envelope", *OPTIONAL))
+        zone, changes = self.zones[name], dict(changes)
+        if "scale" in changes:
+            zone = zone.scaled(changes.pop("scale"))
+        known = ", ".join((*KNEE, "k_unloading", "envelope", *OPTIONAL, "scale"))
         for key in changes:
             if key not in known.split(", "):
                 raise ValueError(f"zone parameter must be one of {known}; got {key!r}")
@@ -276,7 +279,7 @@ class VehicleVariants(VehicleData):
         for key, quantity in LAW_QUANTITIES.items():
             if isinstance(changes.get(key), str):
                 changes[key] = si(key, changes[key], quantity)
-        return self.with_zones({name: dataclasses.replace(self.zones[name], **changes)})
+        return self.with_zones({name: dataclasses.replace(zone, **changes)})
 
     def with_zones(self, zones: Mapping[str, Zone]) -> Self:
         """Return the vehicle with some of its zones replaced."""
