@@ -22,9 +22,9 @@ std::string verdict(const Event& event) {
 }
 
 std::string manner(const Event& event) {
-    constexpr std::array names = {"no_barrier", "moving", "rests_untouched", "rests",
-                                  "rebounds",   "leaves", "slides_to_end",   "slides_on",
-                                  "between",    "beside", "rests_beyond",    "over"};
+    constexpr std::array names = {
+        "no_barrier", "moving",  "rests_untouched", "rests",        "rebounds", "leaves", "slides_to_end",
+        "slides_on",  "between", "beside",          "rests_beyond", "over",     "slow"};
     return names.at(static_cast<std::size_t>(event.manner));
 }
 

@@ -104,7 +104,6 @@ void register_extremes(py::module_& m) {
                       "m/s^2, overturning moment over mass and half the base, 50-ms means");
     py::class_<Extremes::JointLoads>(m, "ExtremeJointLoads", "Articulation and force of the first joint.")
         .def_readonly("angle", &Extremes::JointLoads::angle, "rad, greatest magnitude of the articulation")
-        .def_readonly("force", &Extremes::JointLoads::force, "N, greatest force on the leading unit")
         .def_readonly("slip", &Extremes::JointLoads::slip, "m, greatest slip of a sliding joint")
         .def_readonly("force_50ms", &Extremes::JointLoads::force_50ms,
                       "N, greatest mean of that force over 50 ms");

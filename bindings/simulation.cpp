@@ -90,6 +90,8 @@ void register_simulation(py::module_& m) {
                       "N, greatest mean over 50 ms of the barrier's force on the rigid core")
         .def_readonly("core_contact_time", &StepStatistics::core_contact_time,
                       "s, time of that greatest mean")
+        .def_readonly("fastest_rise", &StepStatistics::fastest_rise,
+                      "m/s, greatest upward speed of a unit's mass centre after the barrier was touched")
         .def_readonly("wheels_given_way", &StepStatistics::wheels_given_way,
                       "wheels that were loaded beyond what they carry, and have given way")
         .def_readonly("wheels_on_ground", &StepStatistics::wheels_on_ground,

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from .result.core_contact import CoreContactWarning
     from .result.element_loads import ElementLoad
     from .result.energy_balance import BalanceWarning
+    from .result.leaning_posts import LeaningPostWarning
     from .result.load_map import LoadMap
     from .result.low_barrier import LowBarrierWarning
     from .result.missed import MissedBarrierWarning
@@ -86,6 +87,7 @@ __all__ = [
     "FreeStanding",
     "HistoryBands",
     "Joint",
+    "LeaningPostWarning",
     "Limit",
     "LoadMap",
     "LowBarrierWarning",
@@ -170,6 +172,7 @@ _WHERE = {
     "Joint": "vehicle:Joint",
     "Limit": "study.limit_search:Limit",
     "LoadMap": "result.load_map:LoadMap",
+    "LeaningPostWarning": "result.leaning_posts:LeaningPostWarning",
     "LowBarrierWarning": "result.low_barrier:LowBarrierWarning",
     "MassWarning": "vehicle.mass_check:MassWarning",
     "MissedBarrierWarning": "result.missed:MissedBarrierWarning",

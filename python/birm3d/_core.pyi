@@ -353,11 +353,6 @@ class ExtremeJointLoads:
         rad, greatest magnitude of the articulation
         """
     @property
-    def force(self) -> float:
-        """
-        N, greatest force on the leading unit
-        """
-    @property
     def force_50ms(self) -> float:
         """
         N, greatest mean of that force over 50 ms
@@ -1074,6 +1069,11 @@ class StepStatistics:
     def deepest_point(self) -> float:
         """
         m, greatest depth of an anchor of a bottomed-out truss inside a barrier
+        """
+    @property
+    def fastest_rise(self) -> float:
+        """
+        m/s, greatest upward speed of a unit's mass centre after the barrier was touched
         """
     @property
     def free_steps(self) -> int:

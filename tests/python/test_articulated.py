@@ -71,7 +71,7 @@ def test_a_vehicle_of_one_unit_says_so() -> None:
     assert block.joint is None
     result = scenes.w1().run()
     assert "joints" not in result.energy
-    assert "peak_joint_force" not in result.metrics
+    assert "peak_joint_force_50ms" not in result.metrics
     with pytest.raises(ValueError, match="two units, got 'laboratory_block' of one"):
         _ = result.joint_force
     with pytest.raises(ValueError, match=r"index must be >= 0 and < 1, .*got 1"):
@@ -241,7 +241,6 @@ def test_the_trailer_pushes_the_tractor() -> None:
     change = trailer.mass * (result.unit(1).velocity[-1, 0] - result.unit(1).velocity[0, 0])
     assert impulse == pytest.approx(-change, rel=1e-9)
     assert result.joint_force[:, 0].max() > 5e5  # forwards on the tractor
-    assert result.metrics["peak_joint_force"] == np.linalg.norm(result.joint_force, axis=1).max()
     assert result.metrics["max_articulation_angle"] < 1e-6
     # Without it the tractor alone presses the wall much less.
     alone = Simulation(semi().units[0], Barrier.rigid_wall(), 12.0, duration=0.5).run()
@@ -336,7 +335,7 @@ def test_a_sweep_has_the_scalars_of_the_joint() -> None:
     simulation = Simulation(semi(), Barrier.rigid_wall(), 8.0, 60.0, duration=0.05)
     study = birm3d.sweep(simulation, impact_speed=[4.0, 8.0])
     result = simulation.run()
-    for name in ("max_articulation_angle", "peak_joint_force", "peak_joint_force_50ms"):
+    for name in ("max_articulation_angle", "peak_joint_force_50ms"):
         assert study.metrics[name][1] == result.metrics[name]
 
 

@@ -513,3 +513,15 @@ def test_a_heavy_vehicle_loads_a_wall_lower_than_design_tables_have_it() -> None
         loads = birm3d.design_load(Simulation(vehicle, wall, 15.0, 20.0), draws=0, progress=False)
         assert (told in loads.caution) is heavy
         assert (told in loads.summary()) is heavy
+
+
+def test_a_lower_speed_that_loads_a_post_more_is_said() -> None:
+    """The front of the pickup softens: at 9 m/s the moment over 50 ms is greater than at 13 m/s."""
+    pickup = Vehicle.preset("pickup", mesh_density=0.5)
+    at = {speed: Simulation(pickup, Barrier.bollards(), speed).run() for speed in (9.0, 13.0)}
+    moment = {speed: float(run.metrics["peak_overturning_moment_50ms"]) for speed, run in at.items()}
+    assert moment[9.0] > 1.05 * moment[13.0]
+    one = birm3d.design_load(at[13.0], natural_period=0.05)
+    both = birm3d.design_load(list(at.values()), natural_period=0.05)
+    assert "a lower speed can ask for more" in one.caution
+    assert "a lower speed can ask for more" not in both.caution

@@ -80,3 +80,37 @@ def test_an_undecided_run_of_the_longest_duration_asks_for_a_longer_one() -> Non
     assert result.end_reason == "longest"
     with pytest.raises(ValueError, match=r"\(a duration above 5 s\), got one that ends at 5 s"):
         rate(result, "MASH")
+
+
+@pytest.mark.parametrize(
+    ("barrier", "offset"),
+    [(Barrier.rigid_wall(width=3.0, height=1.0), 1.8), (Barrier.planter(length=2.0), 1.3)],
+)
+def test_a_car_that_rolls_on_past_an_end_has_passed(barrier: Barrier, offset: float) -> None:
+    """It moved at less than a tenth of its impact speed: it was "stopped", and rated by 0.2 m."""
+    sedan = Vehicle.preset("sedan_1500")
+    whole = Simulation(sedan, barrier, 22.35, 90.0, offset).run()
+    longer = Simulation(sedan, barrier, 22.35, 90.0, offset, duration=6.0).run()
+    assert (whole.outcome, longer.outcome) == ("passed", "passed")
+    assert whole.metrics["vehicle_penetration"] > 0.9
+
+
+def test_a_longer_run_does_not_know_less() -> None:
+    """A truck rolls back from a planter at 0.6 m/s: stopped without a duration, undecided with 5 s."""
+    semi, planter = Vehicle.preset("semi_truck"), Barrier.planter(length=1.5, width=1.43, height=0.92)
+    details = {
+        Simulation(semi, planter, 20.65, 13.1, 1.54, duration=duration).run().outcome_detail
+        for duration in (None, 5.0, 7.0)
+    }
+    assert details == {"it was slower than a tenth of its impact speed when the run ended, at the barrier"}
+
+
+def test_posts_that_are_never_touched_do_not_change_the_word() -> None:
+    """What a vehicle does is judged as it loses contact, as its exit angle: 53 deg, so it rebounds."""
+    found = []
+    for count in (7, 13, 21):
+        posts = Barrier.bollards(count=count, height=0.98, spacing=1.21)
+        result = Simulation(Vehicle.preset("mash_1100c"), posts, 24.27, 45.5, 1.06).run()
+        assert result.metrics["exit_angle"] > 45.0
+        found.append(result.outcome_detail)
+    assert found == ["it rebounded from the barrier"] * 3

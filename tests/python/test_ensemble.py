@@ -161,7 +161,6 @@ def from_histories(result: Result) -> dict[str, float]:
         found["wheel_climb"] = highest_wheel(result)
     if scene.vehicle.joint is not None:
         found["max_articulation_angle"] = np.abs(result.articulation_angle).max()
-        found["peak_joint_force"] = np.linalg.norm(result.joint_force, axis=1).max()
         mean = np.column_stack([moving_average(one, 0.05, interval) for one in result.joint_force.T])
         found["peak_joint_force_50ms"] = np.linalg.norm(mean, axis=1).max()
     if scene.barrier is None:

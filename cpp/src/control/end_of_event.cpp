@@ -114,13 +114,14 @@ std::vector<Box> boxes_of_barrier(const Scene& scene, const State& state, const 
     return boxes;
 }
 
-// May the vehicle still come past an end of the barrier, though it moves away from it now? It may where it skids beside an end,
-// and is not past the barrier yet.
+// May the vehicle still come past an end of the barrier, though it moves away from it now? It may where it skids beside an end, or
+// rolls on beside it towards the protected side, and is not past the barrier yet.
 bool may_turn_back(const Scene& scene, const State& state) {
     constexpr double far_from_ends = 2.0;  // reaches of the vehicle
     if (!scene.settings.ground || scene.settings.gravity == 0.0 || scene.settings.mu_tire == 0.0)
         return false;
-    if (!skids(scene, state)) return false;
+    const bool rolls_in = state.units.front().body.velocity.dot(scene.towards()) > tolerance::coasting_speed;
+    if (!rolls_in && !skids(scene, state)) return false;
     Mat3 axes;
     axes << scene.towards(), Vec3::UnitZ().cross(scene.towards()), Vec3::UnitZ();
     const Vec3 place = axes.transpose() * state.units.front().body.position,

@@ -42,11 +42,14 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
         event.manner = passes_between(scene, state, event) ? Manner::between : Manner::beside;
         return;
     }
-    const double along = body.velocity.dot(line_direction(event));
+    // What it does is judged as it loses contact, to which its exit speed and angle belong.
+    const Vec3& exit = state.touched ? event.released_velocity : body.velocity;
+    const double along = exit.dot(line_direction(event)), back = -exit.dot(event.towards),
+                 exit_speed = std::hypot(exit.x(), exit.y());
     // Component of the approach in that direction. A path square to the line has none: what moves back was stopped.
     const double came = scene.heading().dot(line_direction(event));
-    const bool goes_on = std::abs(came) < parallel ? into > -parallel * speed : along * came > 0.0;
-    if (goes_on && std::abs(along) > -into && speed > tolerance::stopped_share * scene.approach.speed) {
+    const bool goes_on = std::abs(came) < parallel ? back < parallel * exit_speed : along * came > 0.0;
+    if (goes_on && std::abs(along) > back && exit_speed > tolerance::stopped_share * scene.approach.speed) {
         event.verdict = Verdict::redirected;
         event.manner = is_beyond_end(scene, state, event) ? Manner::slides_to_end : Manner::leaves;
         return;
@@ -61,8 +64,9 @@ void revise(const Scene& scene, const State& state, bool at_end, Event& event) {
     if (!event.left || event.touching || event.rolled_over() || runs_along_line(scene)) return;
     if (event.verdict != Verdict::stopped && event.verdict != Verdict::redirected) return;
     const Vec3& velocity = state.units.front().body.velocity;
-    const bool moves = velocity.norm() > tolerance::stopped_share * scene.approach.speed;
-    const bool nears = at_end && moves && velocity.dot(event.towards) > parallel * velocity.norm();
+    const bool moves = velocity.norm() > tolerance::coasting_speed;
+    const bool nears = at_end && velocity.dot(event.towards) >
+                                     std::max(tolerance::coasting_speed, parallel * velocity.norm());
     const bool past =
         distance_past_line(scene, state, event) > 0.0 && crossed_beside_elements(scene, state, event);
     if (!nears && !past) return;
@@ -158,8 +162,12 @@ void judge_at_longest(const Scene& scene, const State& state, Event& event) {
     const Vec3& velocity = state.units.front().body.velocity;
     const double along = velocity.dot(line_direction(event)), across = velocity.dot(event.towards);
     const bool goes_on = along * scene.heading().dot(line_direction(event)) > 0.0;
-    if (!(velocity.norm() > tolerance::stopped_share * scene.approach.speed))
-        return judge_rest(scene, state, event);
+    if (!(velocity.norm() > tolerance::stopped_share * scene.approach.speed)) {
+        judge_rest(scene, state, event);
+        if (event.manner == Manner::rests && velocity.norm() > tolerance::coasting_speed)
+            event.manner = Manner::slow;
+        return;
+    }
     if (!goes_on || std::abs(across) > still_along * std::abs(along)) return;
     if (distance_past_line(scene, state, event) < 0.0)
         event.verdict = Verdict::redirected, event.manner = Manner::slides_on;

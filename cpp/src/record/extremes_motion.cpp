@@ -141,16 +141,14 @@ Extremes::JointLoads greatest_joint_loads(const History& history) {
     Turning angle(joint.angles.front().yaw, 0.0);
     for (const JointAngles& angles : joint.angles)
         angle.add(angles.yaw);
-    Extremes::JointLoads found{angle.greatest(), 0.0, 0.0, 0.0};
+    Extremes::JointLoads found{angle.greatest(), 0.0, 0.0};
     for (const double slip : joint.slip)
         found.slip = std::max(found.slip, std::abs(slip));
     if (joint.force.size() < 2) return found;
     const std::size_t window = rows_in(window_50ms, history.time[1] - history.time[0]);
     WindowSum sum(joint.force, window);
-    for (std::size_t k = 0; k < joint.force.size(); ++k) {
-        found.force = std::max(found.force, joint.force[k].norm());
+    for (std::size_t k = 0; k < joint.force.size(); ++k)
         found.force_50ms = std::max(found.force_50ms, sum.up_to(k).norm() / static_cast<double>(window));
-    }
     return found;
 }
 

@@ -152,7 +152,8 @@ void Simulation::accept_trial() {
         state_.decided = true;
         state_.decided_at = time_of_decision(scene_, work_->before, released, trial.dt, trial.state);
     }
-    if (!scene_.duration && end_reason() == EndReason::longest) judge_at_longest(scene_, state_, event_);
+    const bool long_enough = state_.time >= tolerance::longest_event - tolerance::shortest_step;
+    if (!state_.decided && long_enough && !(remaining() > 0.0)) judge_at_longest(scene_, state_, event_);
     failed_ = false;
 }
 

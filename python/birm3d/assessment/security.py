@@ -16,6 +16,7 @@ import numpy as np
 
 from .. import units
 from ..result.event import gets_past, is_open, longer_run, outcome_words
+from ..result.leaning_posts import leaning_post_lines
 from ..result.low_barrier import low_barrier_lines
 from ..vehicle.joint import LONGEST_SLIP
 from .criteria import Criterion
@@ -174,6 +175,7 @@ def rate_security(
         " ".join(
             [
                 *low_barrier_lines(result),
+                *leaning_post_lines(result),
                 *tipping_lines(result),
                 standard.caution,
                 *_of_bed(result),

@@ -94,6 +94,7 @@ _TIPPED = 60.0  # deg; beyond, a leading unit may be the one whose up axis point
 _MANNERS = {
     "rests_untouched": "it came to rest before it reached the barrier",
     "rests": "it came to rest at the barrier",
+    "slow": "it was slower than a tenth of its impact speed when the run ended, at the barrier",
     "rebounds": "it rebounded from the barrier",
     "leaves": "it left along the barrier",
     "slides_to_end": "it slid along the barrier to its end and left",

@@ -316,13 +316,13 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             *(lambda run: math.degrees(run.extremes.joint.angle), "joint"),
             shown=_asked("greatest angle between the units", "deg"),
         ),
-        "peak_joint_force": Metric(
-            *("N", "joint", "greatest magnitude of the force between two units, unfiltered", "joint"),
-            *(lambda run: run.extremes.joint.force, "joint"),
-            shown=_asked("peak force of the joint, unfiltered", "kN", 1e3),
-        ),
         "peak_joint_force_50ms": Metric(
-            *("N", "joint", "of the magnitude of that force's mean over 50 ms", "joint"),
+            *(
+                "N",
+                "joint",
+                "greatest magnitude of the mean over 50 ms of the force between two units",
+                "joint",
+            ),
             *(lambda run: run.extremes.joint.force_50ms, "joint"),
             shown=_asked("peak 50-ms force of the joint", "kN", 1e3),
         ),

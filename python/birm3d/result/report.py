@@ -12,6 +12,7 @@ from ..vehicle.title import vehicle_text
 from .core_contact import core_lines
 from .element_loads import touched_elements
 from .event import outcome_words
+from .leaning_posts import leaning_post_lines
 from .low_barrier import low_barrier_lines
 from .omitted import omitted_lines
 
@@ -64,7 +65,7 @@ def report(result: RunAnalysis) -> str:
         f"initial kinetic energy, momentum residual {metrics['momentum_residual']:.1e}",
     ]
     lines += core_lines(result)
-    lines += [f"  {line}" for line in low_barrier_lines(result)]
+    lines += [f"  {line}" for line in (*low_barrier_lines(result), *leaning_post_lines(result))]
     if vehicle.joint is not None:
         lines.append(
             f"  {vehicle.joint.kind}: peak 50-ms mean of the force "

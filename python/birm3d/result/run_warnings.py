@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from .core_contact import core_complaints
 from .energy_balance import open_balances
+from .leaning_posts import leaning_posts
 from .low_barrier import low_barrier
 from .missed import missed_barrier
 from .overlap import overlaps
@@ -24,13 +25,14 @@ __all__ = ["complaints_of_run", "warn_of_run"]
 def complaints_of_run(
     scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances, event: _core.Event
 ) -> Iterator[Complaint]:
-    """Return complaints: overlap, blows on the core, open balances, missed barriers, low barriers."""
+    """Return complaints: overlap, core blows, open balances, missed and low barriers, leaning posts."""
     return chain(
         overlaps(scene, statistics),
         core_complaints(scene, statistics),
         open_balances(scene, balances),
         missed_barrier(scene, event),
         low_barrier(scene, event),
+        leaning_posts(scene, statistics),
     )
 
 
@@ -51,6 +53,8 @@ def warn_of_run(
         As a warning, if the vehicle went past the end of the barrier and never touched it.
     LowBarrierWarning
         As a warning, if a barrier that contains a front is lower than most of it.
+    LeaningPostWarning
+        As a warning, if posts that lean threw the vehicle up.
     """
     for complaint in complaints_of_run(scene, statistics, balances, event):
         complaint.warn()

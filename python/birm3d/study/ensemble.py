@@ -64,7 +64,8 @@ def ensemble(
         If the executor dies. Finished runs are in its ``study``.
     StudyInterrupted
         A KeyboardInterrupt, with the finished runs in its ``study``.
-    OverlapWarning, CoreContactWarning, BalanceWarning, MissedBarrierWarning, LowBarrierWarning
+    OverlapWarning, CoreContactWarning, BalanceWarning, MissedBarrierWarning, LowBarrierWarning,
+    LeaningPostWarning
         As warnings, each once: how many and which rows are not reliable, and what is wrong with the worst.
 
     Examples

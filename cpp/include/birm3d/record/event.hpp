@@ -30,6 +30,7 @@ enum class Manner {
     beside,           // it passed beside the barrier's end
     rests_beyond,     // it rests past the line
     over,             // it went over the top
+    slow,  // it is still at the barrier as a long run ends, slower than a tenth of its approach speed
 };
 
 struct Event {
@@ -85,8 +86,8 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
 // Is the outcome known, with nothing still to be seen of roll, pitch and what slides? Then the event has its verdict.
 bool is_decided(const Scene& scene, const State& state, Event& event);
 
-// Gives a run its verdict that ends undecided at tolerance::longest_event. A vehicle that still slides along the barrier is
-// redirected.
+// Gives a run its verdict that ends undecided at tolerance::longest_event or later. A vehicle that still slides along the barrier
+// is redirected, one that is slow is stopped.
 void judge_at_longest(const Scene& scene, const State& state, Event& event);
 
 // Greatest deflections of the trusses of the skin of all units, without second trusses and treads (m).

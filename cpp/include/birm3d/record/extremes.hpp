@@ -86,8 +86,7 @@ struct Extremes {
     };
     struct JointLoads {
         double angle;       // greatest magnitude of the articulation angle (rad)
-        double force;       // greatest magnitude of the force on the leading unit (N)
-        double force_50ms;  // greatest magnitude of the mean of that force over 50 ms (N)
+        double force_50ms;  // greatest magnitude of the mean over 50 ms of the force on the leading unit (N)
         double slip;        // greatest magnitude of the slip (m)
     };
     std::optional<NormalForce> normal_force;

@@ -90,6 +90,8 @@ struct StepStatistics {
     std::uint64_t body_steps = 0;     // steps in which the rigid body stood against the barrier or the ground
     double core_contact_force = 0.0;  // greatest mean over 50 ms of the barrier's force on the rigid core (N)
     double core_contact_time = 0.0;   // when (s)
+    // Greatest upward speed of a unit's mass centre after the barrier was touched (m/s).
+    double fastest_rise = 0.0;
     std::uint64_t wheels_on_ground = 0;  // wheels that carried load, summed over the steps
     std::uint64_t wheels_given_way = 0;  // wheels that were loaded beyond what they carry
 };

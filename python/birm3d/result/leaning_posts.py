@@ -1,0 +1,55 @@
+"""Warning of posts that lean and throw the vehicle up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING
+
+from ..base.complaints import Complaint
+
+if TYPE_CHECKING:
+    from .. import _core
+    from ..scene.scene import Scene
+    from .analysis import RunAnalysis
+
+__all__ = ["LeaningPostWarning", "leaning_post_lines", "leaning_posts"]
+
+_FASTEST = 2.0  # m/s: as from a fall of 0.2 m
+
+
+class LeaningPostWarning(UserWarning):
+    """Posts that yield leaned, and threw the vehicle up at more than 2 m/s.
+
+    A leaning post is a ramp in this model: nothing but friction holds the front down. A real front folds
+    round a tube, which holds it. Whether the vehicle is stopped or goes over can be wrong either way.
+    """
+
+
+def leaning_posts(scene: Scene, statistics: _core.StepStatistics) -> Iterator[Complaint]:
+    """Yield a complaint if posts that yield threw the vehicle up."""
+    if _throws(scene, statistics):
+        speed = statistics.fastest_rise
+        text = partial(_text, scene.vehicle.title, speed)
+        yield Complaint(LeaningPostWarning, "fastest_rise", speed, text)
+
+
+def leaning_post_lines(result: RunAnalysis) -> Iterator[str]:
+    """Yield the warning for cautions and reports, if there is one."""
+    if _throws(result.scene, result.statistics):
+        yield (
+            f"Leaning posts throw the vehicle up at {result.statistics.fastest_rise:.1f} m/s: they are ramps "
+            "in this model. A real front folds round a tube, which holds it down. Do not rely on the outcome."
+        )
+
+
+def _throws(scene: Scene, statistics: _core.StepStatistics) -> bool:
+    barrier = scene.barrier
+    return barrier is not None and barrier.yields() is not None and statistics.fastest_rise > _FASTEST
+
+
+def _text(title: str, speed: float) -> str:
+    return (
+        f"fastest_rise must be at most {_FASTEST:g} m/s to rely on the outcome, got {speed:.1f} m/s: leaning "
+        f"posts throw the vehicle ({title}) up; a real front folds round a tube, which holds it down"
+    )

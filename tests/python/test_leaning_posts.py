@@ -1,0 +1,32 @@
+"""Posts that lean are ramps: a vehicle that they throw up is warned of."""
+
+from __future__ import annotations
+
+import warnings
+
+import birm3d
+import pytest
+from birm3d import Barrier, LeaningPostWarning, Result, Simulation, Vehicle
+
+TUBES = {"count": 7, "diameter": 0.273, "height": 0.7}
+
+
+def van_at(posts: Barrier) -> Result:
+    return Simulation(Vehicle.preset("van_3500", mesh_density=0.3), posts, 22.35).run()
+
+
+def test_a_van_that_leaning_posts_throw_up_is_warned_of() -> None:
+    with pytest.warns(LeaningPostWarning, match="got 5"):
+        result = van_at(Barrier.bollards(**TUBES, wall_thickness=0.016))
+    assert result.statistics.fastest_rise == pytest.approx(result.velocity[:, 2].max(), rel=0.02)
+    sentence = "Leaning posts throw the vehicle up at 5"
+    assert sentence in result.report()
+    assert sentence in birm3d.rate(result, "IWA 14-1").caution
+    assert sentence in birm3d.design_load(result, natural_period=0.05).caution
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning")
+def test_rigid_posts_are_not() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", LeaningPostWarning)
+        van_at(Barrier.bollards(**TUBES))
