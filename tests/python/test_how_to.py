@@ -81,7 +81,7 @@ nodes, anchors = [[3.0, 0.5, 0.0], [3.0, -0.5, 0.0]], [[1.0, 0.5, 0.0], [1.0, -0
 # Packages that a page asks for.
 EXTRAS = {
     "barrier": ("trimesh",),
-    "mesh": ("trimesh", "lsdyna_mesh_reader"),
+    "mesh": ("trimesh",),
     **dict.fromkeys(("design-loads", "result", "studies"), ("pandas",)),
 }
 

@@ -22,7 +22,8 @@ def test_a_van_that_leaning_posts_throw_up_is_warned_of() -> None:
     sentence = "Leaning posts throw the vehicle up at 5"
     assert sentence in result.report()
     assert sentence in birm3d.rate(result, "IWA 14-1").caution
-    assert sentence in birm3d.design_load(result, natural_period=0.05).caution
+    with pytest.warns(LeaningPostWarning, match="16 in 16 runs"):  # its vehicles of the class
+        assert sentence in birm3d.design_load(result, natural_period=0.05).caution
 
 
 @pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning")

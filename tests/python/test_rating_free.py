@@ -10,7 +10,7 @@ import pytest
 from birm3d import Barrier, Result, Simulation, Vehicle, units
 from birm3d.assessment import Rating
 from birm3d.assessment.roadside_rating import _upright
-from tires import quick_to_steer
+from tires import held_straight, quick_to_steer
 
 PICKUP = Vehicle.preset("mash_2270p", mesh_density=0.1)
 
@@ -118,7 +118,7 @@ def test_a_vehicle_that_passed_and_rolled_over_is_not_called_upright() -> None:
 @pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
 def test_a_truck_on_its_side_is_not_upright() -> None:
     """It slides on along the wall at 88 degrees, less than the 90 of "rolled over"."""
-    wall, truck = Barrier.rigid_wall(height=0.77), Vehicle.preset("heavy_truck_29500")
+    wall, truck = Barrier.rigid_wall(height=0.77), held_straight(Vehicle.preset("heavy_truck_29500"))
     result = Simulation(truck, wall, 18.06, 20.0).run()
     greatest, last = float(np.abs(result.roll).max()), abs(float(result.roll[-1]))
     assert result.outcome == "redirected"

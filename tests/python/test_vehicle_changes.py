@@ -279,3 +279,12 @@ def test_masses_in_the_wrong_unit_are_warned_of(make: Callable[[], Vehicle], mes
         make()
     assert len(told) == 1
     assert told[0].filename == __file__
+
+
+def test_a_zone_is_scaled_as_a_whole() -> None:
+    car = Vehicle.preset("pickup", mesh_density=0.1)
+    assert car.with_zone("bumper", scale=1.2).zones["bumper"] == car.zones["bumper"].scaled(1.2)
+    both = car.with_zone("bumper", scale=2.0, k_unloading=3e8).zones["bumper"]
+    assert both == dataclasses.replace(car.zones["bumper"].scaled(2.0), k_unloading=3e8)
+    with pytest.raises(ValueError, match="scale must be finite and > 0, got -1"):
+        car.with_zone("bumper", scale=-1.0)

@@ -16,8 +16,8 @@ def tired(vehicle: Vehicle, **changes: float | None) -> Vehicle:
 
 
 def held_straight(vehicle: Vehicle) -> Vehicle:
-    """Return the vehicle with wheels that stay straight and push nowhere as they tilt."""
-    return tired(vehicle, steering_time=None, camber_ratio=None)
+    """Return the vehicle with straight wheels that are thin discs and push nowhere as they tilt."""
+    return tired(vehicle, steering_time=None, camber_ratio=None, tread_radius=None)
 
 
 def quick_to_steer(vehicle: Vehicle) -> Vehicle:

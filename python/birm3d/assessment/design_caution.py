@@ -62,7 +62,7 @@ _UNDECIDED = "The outcome was not decided when a run ended: later loads on {elem
 
 _LOW = (
     "The vehicle is heavy, and its force is computed lower than design tables have it: at a wall of 1.07 m "
-    "(TL-5) it acts at 0.58 m, and AASHTO applies its design force at 1.07 m. Check the moment about the "
+    "(TL-5) it acts at 0.59 m, and AASHTO applies its design force at 1.07 m. Check the moment about the "
     "foot with the height of your standard, too."
 )
 

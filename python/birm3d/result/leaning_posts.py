@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
     from .analysis import RunAnalysis
+    from .stored import Stored
 
 __all__ = ["LeaningPostWarning", "leaning_post_lines", "leaning_posts"]
 
@@ -43,9 +44,11 @@ def leaning_post_lines(result: RunAnalysis) -> Iterator[str]:
         )
 
 
-def _throws(scene: Scene, statistics: _core.StepStatistics) -> bool:
-    barrier = scene.barrier
-    return barrier is not None and barrier.yields() is not None and statistics.fastest_rise > _FASTEST
+def _throws(scene: Scene, statistics: _core.StepStatistics | Stored) -> bool:
+    if scene.barrier is None or scene.barrier.yields() is None:
+        return False
+    rise = float(getattr(statistics, "fastest_rise", 0.0))  # results of earlier versions do not have it
+    return rise > _FASTEST
 
 
 def _text(title: str, speed: float) -> str:

@@ -172,10 +172,8 @@ class Simulation:
             As a warning, if a balance of the run does not close: energy, momentum, or dissipation that falls.
         MissedBarrierWarning
             As a warning, if the vehicle went past the end of the barrier and never touched it.
-        LowBarrierWarning
-            As a warning, if a barrier that contains a front is lower than most of it.
-        LeaningPostWarning
-            As a warning, if posts that lean threw the vehicle up.
+        LowBarrierWarning, LeaningPostWarning
+            As warnings, if a barrier that contains a front is low, or posts that lean threw the vehicle up.
         ValueError
             If the frames are more than the result's rows or outside the run, or if the run takes more steps
             than a record holds; :meth:`result` has those that were taken.

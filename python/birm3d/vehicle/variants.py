@@ -248,16 +248,14 @@ class VehicleVariants(VehicleData):
     def with_zone(self, name: str, **changes: Any) -> Self:
         """Return the vehicle with other stiffness numbers in one zone (see :class:`Zone`).
 
-        Text with a unit is taken too, as ``knee="20 cm"`` or ``f_max="1.1 MPa"`` (``k_initial`` in MPa/m). A
-        zone with an envelope becomes one with a knee when ``k_initial``, ``knee`` and ``k_hardening`` are
-        given, and the other way round when ``envelope`` is. Such a law is a new one, and so is one of which
-        all of Fig. 3 but ``f_max`` is given. The ``elastic_recovery`` and the tail of the old one do not go
-        on, unless they are given too. ``scale`` multiplies all stresses of the zone.
+        Text with a unit is taken too, as ``knee="20 cm"``. ``scale`` multiplies all stresses of a zone. With
+        ``k_initial``, ``knee`` and ``k_hardening`` an envelope becomes a knee, with ``envelope`` a knee one.
+        Such a law is a new one, as is one with all of Fig. 3 but ``f_max``: recovery and tail do not go on.
         """
         if name not in self.zones:
             known = ", ".join(self.zones) or "none: the vehicle was made from arrays"
             raise ValueError(f"zone must be one of {known}; got {name!r}")
-        zone, changes = self.zones[name], dict(changes)
+        zone = self.zones[name]
         if "scale" in changes:
             zone = zone.scaled(changes.pop("scale"))
         known = ", ".join((*KNEE, "k_unloading", "envelope", *OPTIONAL, "scale"))
