@@ -106,7 +106,7 @@ void register_extremes(py::module_& m) {
         .def_readonly("angle", &Extremes::JointLoads::angle, "rad, greatest magnitude of the articulation")
         .def_readonly("slip", &Extremes::JointLoads::slip, "m, greatest slip of a sliding joint")
         .def_readonly("force_50ms", &Extremes::JointLoads::force_50ms,
-                      "N, greatest mean of that force over 50 ms");
+                      "N, greatest mean over 50 ms of the force on the leading unit");
     py::class_<Extremes> extremes(
         m, "Extremes", "Extremes of a history over its output instants; a group that was not wanted raises.");
     extremes.def_readonly("rows", &Extremes::rows, "number of output instants")

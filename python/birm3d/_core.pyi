@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Approach', 'Balances', 'Barrier', 'BusyError', 'ContactModel', 'Departure', 'Element', 'EndReason', 'Event', 'ExtremeAttitude', 'ExtremeElementLoads', 'ExtremeEnergy', 'ExtremeFilteredForce', 'ExtremeGroups', 'ExtremeJointLoads', 'ExtremeMotion', 'ExtremeNormalForce', 'ExtremeSegments', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Scene', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'TrussMesh', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'YieldingPosts', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
+__all__: list[str] = ['Approach', 'Balances', 'Barrier', 'BusyError', 'ContactModel', 'Departure', 'Element', 'EndReason', 'Event', 'ExtremeAttitude', 'ExtremeElementLoads', 'ExtremeEnergy', 'ExtremeFilteredForce', 'ExtremeGroups', 'ExtremeJointLoads', 'ExtremeMotion', 'ExtremeNormalForce', 'ExtremeSegments', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Scene', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'TrussMesh', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'YieldingPosts', 'along_line', 'coasting_speed', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
 class Approach:
     """
     How the vehicle comes (SI, rad). Immutable.
@@ -355,7 +355,7 @@ class ExtremeJointLoads:
     @property
     def force_50ms(self) -> float:
         """
-        N, greatest mean of that force over 50 ms
+        N, greatest mean over 50 ms of the force on the leading unit
         """
     @property
     def slip(self) -> float:
@@ -1415,4 +1415,5 @@ def tumble(inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], ang
     Free motion from the identity orientation: energy (n,) J, angular momentum (n, 3), quaternion (n, 4) w x y z.
     """
 along_line: float = 1e-09
+coasting_speed: float = 0.25
 tail_duration: float = 0.02

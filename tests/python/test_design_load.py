@@ -523,5 +523,5 @@ def test_a_lower_speed_that_loads_a_post_more_is_said() -> None:
     assert moment[9.0] > 1.05 * moment[13.0]
     one = birm3d.design_load(at[13.0], natural_period=0.05)
     both = birm3d.design_load(list(at.values()), natural_period=0.05)
-    assert "a lower speed can ask for more" in one.caution
-    assert "a lower speed can ask for more" not in both.caution
+    assert "A lower speed can load a post more" in one.caution
+    assert "A lower speed can load a post more" not in both.caution

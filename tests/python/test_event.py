@@ -176,7 +176,6 @@ def test_a_truck_that_its_tires_press_on_a_long_barrier_is_redirected() -> None:
     assert "time_of_separation" not in result.metrics
 
 
-@MISSES
 @pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning", "ignore::birm3d.CoreContactWarning")
 def test_who_nears_the_barrier_at_the_last_contact_is_said_to() -> None:
     truck = Vehicle.preset("mash_10000s", mesh_density=0.3)
@@ -187,6 +186,7 @@ def test_who_nears_the_barrier_at_the_last_contact_is_said_to() -> None:
     assert "neared" not in run("wall").outcome_detail
 
 
+@MISSES
 def test_no_angle_of_what_passed_and_none_without_a_barrier() -> None:
     with pytest.raises(KeyError, match=r"does not leave on the traffic side|did not separate"):
         run("end").metrics["exit_angle"]

@@ -13,18 +13,20 @@ from stand_in import name_of, stand_in
 
 NAME = "redirection"
 TITLE = "Oblique impact on walls and concrete barriers"
-TEXT = """Vehicles: the stand-in of the class with the test's mass. Barriers: rigid, fixed, friction 0.2. No
-measured force, exit angle or roll of these tests could be read in a source; forces as commonly
-reported, whose sources are not at hand, are printed apart. What can be checked: the change of momentum across
-the barrier when the vehicle has left it, or at the end of the run, over the momentum towards it, m v
-sin(angle). It is 1 + e. No test of the table gives it. A restitution e from 0 to 0.3 is taken to be right,
-so the column "measured" has 1.15, which is expected and not measured. Whether the vehicle is contained and
-stays upright (1: yes, 0: no) is compared with what is commonly reported of the tests. The wall's own impulse
-is in the table of computed figures: tyres that press a vehicle on the wall add to it.
+TEXT = """Vehicles: the stand-in of the class with the test's mass. Barriers: rigid, fixed, friction 0.2.
+But for the roll of 2214NJ-2 (101 degrees), no measured force, exit angle or roll could be read in a source;
+forces as commonly reported, whose sources are not at hand, are printed apart. What can be checked: the
+change of momentum across the barrier when the vehicle has left it, or at the end of the run, over the
+momentum towards it, m v sin(angle). It is 1 + e. No test of the table gives it. A restitution e from 0 to
+0.3 is taken to be right, so the column "measured" has 1.15, which is expected and not measured. Whether the
+vehicle is contained and stays upright (1: yes, 0: no) is compared with what is commonly reported of the
+tests. The wall's own impulse is in the table of computed figures: tyres that press a vehicle on the wall
+add to it.
 
 What the model can not do here: rear tyres of trucks turn them away from the barrier while they stand on two
 wheels. So the barrier's own impulse can be less than the change of momentum. A near-side tread that climbs
-a sloped face lifts the body, not its own wheel, and stays on. The load of a trailer does not shift. The
+a sloped face lifts the body, not its own wheel, and stays on. Slow steering lets a tractor with its trailer
+slide along the wall to the end of the run. The load of a trailer does not shift. The
 10-t truck has no camber thrust, and leans on the barrier for more than a second."""
 
 

@@ -29,9 +29,9 @@ fixed. A rating that is computed is indicative. Where the model can not know wha
 says so.
 
 The scenes of MASH 4-11, of the two tractor-trailers and of the broadside pickup are those of the
-[page of all tests](README.md). Greatest roll is that of both units here, and that of the tractor there. TB11
-and TB51 have nominal speeds and angles on both pages. Here the profile is a New Jersey of 0.9 m, there one of
-0.81 m.
+[page of all tests](README.md). Greatest roll is that of both units here, and that of the tractor there. MASH
+4-12 is 2214NJ-2 there. TB11 and TB51 have nominal speeds and angles on both pages. Here the profile is a New
+Jersey of 0.9 m, there one of 0.81 m.
 """
 
 

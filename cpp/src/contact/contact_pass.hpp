@@ -64,8 +64,7 @@ struct StoppedNode {
     double unloading;                                     // see TrussBlockState
     double work;                                          // on its truss up to the release (J)
     MetFace released_by = {}, stopped_by = {};            // not set where an indentation has vanished
-    bool stays = false;   // has the node been on `stopped_by` since the start of the step?
-    bool leaves = false;  // has an indentation released it? Its work counts only if nothing else holds it
+    bool stays = false;  // has the node been on `stopped_by` since the start of the step?
 };
 
 // The block of nodes that is being computed. One object serves all blocks; begin() resets it.

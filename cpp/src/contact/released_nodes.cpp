@@ -228,7 +228,6 @@ bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBloc
             block.stopped.push_back({i, free_place(pass.mesh.block[block.index], last, i), last.residual[i],
                                      last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i],
                                      work[i]});
-            block.stopped.back().leaves = true;
         } else if (released[i] > 0.0)
             find_stop(pass, plane, i, {held.x[i], held.y[i], held.z[i]}, block, distant);
     }

@@ -114,9 +114,9 @@ std::vector<Box> boxes_of_barrier(const Scene& scene, const State& state, const 
     return boxes;
 }
 
-// May the vehicle still come past an end of the barrier, though it moves away from it now? It may where it skids beside an end, or
+// May a vehicle that moves away from all elements still come past an end of the barrier? It may where it skids beside an end, or
 // rolls on beside it towards the protected side, and is not past the barrier yet.
-bool may_turn_back(const Scene& scene, const State& state) {
+bool may_pass_an_end(const Scene& scene, const State& state) {
     constexpr double far_from_ends = 2.0;  // reaches of the vehicle
     if (!scene.settings.ground || scene.settings.gravity == 0.0 || scene.settings.mu_tire == 0.0)
         return false;
@@ -227,7 +227,7 @@ bool has_left(const Scene& scene, const State& state) {
 }
 
 bool is_over(const Scene& scene, const State& state) {
-    return has_left(scene, state) && !tips(scene, state) && !may_turn_back(scene, state) &&
+    return has_left(scene, state) && !tips(scene, state) && !may_pass_an_end(scene, state) &&
            moving_elements_rest(scene, state);
 }
 

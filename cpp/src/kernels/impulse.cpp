@@ -158,19 +158,22 @@ void ImpulseSolver::find_impulses() {
     else
         settle_active();
 
-    // Activating all violated rows at once is fast but may cycle. Activating one by one can cycle only by rounding,
-    // when some rows become active and inactive again and again.
-    constexpr std::size_t first_alone = 1, last_together = 5;
+    // Activating all violated rows at once is fast but may cycle: it is given up after some rounds in which they did not get
+    // fewer. Activating one by one can cycle only by rounding, when some rows become active and inactive again and again.
+    constexpr std::size_t first_alone = 1;
     constexpr int most_joins = 10;
+    int rounds_together = 5;
     const std::size_t most_rounds = 1000 + rows_.size();
+    std::size_t fewest = rows_.size();
     for (std::size_t round = 0;; ++round) {
-        const bool together = round >= first_alone && round <= last_together;
-        std::size_t worst = rows_.size();
+        const bool together = round >= first_alone && rounds_together > 0;
+        std::size_t worst = rows_.size(), violated = 0;
         double largest = tolerance_;
         for (std::size_t i = 0; i < rows_.size(); ++i) {
             if (rows_[i].settled || rows_[i].active) continue;
             const double missing = shortfall(rows_[i]);
             if (!(missing > tolerance_)) continue;
+            ++violated;
             if (missing > largest) largest = missing, worst = i;
             if (together) activate(i);
         }
@@ -178,9 +181,23 @@ void ImpulseSolver::find_impulses() {
         if (round == most_rounds)
             throw std::runtime_error("rigid contacts: no set of impulses found in " +
                                      std::to_string(most_rounds) + " rounds");
-        if (!together) activate(worst);
+        if (together) {
+            if (violated < fewest)
+                fewest = violated;
+            else
+                --rounds_together;
+            const std::vector<std::size_t> joined(active_.end() - static_cast<std::ptrdiff_t>(violated),
+                                                  active_.end());
+            settle_together();
+            // Of rows that are violated, some would push. If none does, they are violated by rounding only.
+            const bool none_pushes =
+                std::none_of(joined.begin(), joined.end(), [this](std::size_t i) { return rows_[i].active; });
+            for (const std::size_t i : joined)
+                rows_[i].settled = rows_[i].settled || none_pushes;
+            continue;
+        }
+        activate(worst);
         settle_active();
-        if (together) continue;
         ConstraintRow& row = rows_[worst];
         row.settled = !row.active || ++row.joined == most_joins;
     }
@@ -212,77 +229,23 @@ void ImpulseSolver::settle_active() {
     move_by(&ConstraintRow::impulse, motion_);
 }
 
-// Solves the system of the active rows, with their compliance.
-void ImpulseSolver::solve_active() {
-    if (!factorised_) factorise();
-    for (const std::size_t i : active_)
-        rows_[i].residual = rows_[i].shifted_rhs, rows_[i].next = 0.0;
-    add_solution(&ConstraintRow::next);
-    const int refinements = by_bodies_ ? 3 : 0;
-    for (int pass = 0; pass < refinements; ++pass) {
-        move_by(&ConstraintRow::next, working_);
+// The same, but all rows that would pull become inactive at once. Some of them may have to be activated again. A vehicle that lies
+// on a crushed side has thousands of rows, which would become inactive one by one.
+void ImpulseSolver::settle_together() {
+    for (bool done = false; !done;) {
+        solve_active();
+        kept_.clear();
         for (const std::size_t i : active_) {
             ConstraintRow& row = rows_[i];
-            row.residual = row.shifted_rhs - along(row, working_) - row.compliance * row.next;
+            row.active = row.bilateral || row.next > 0.0;
+            row.impulse = row.active ? row.next : 0.0;
+            if (row.active) kept_.push_back(i);
         }
-        add_solution(&ConstraintRow::next);
+        done = kept_.size() == active_.size();
+        if (!done) factorised_ = false;
+        std::swap(active_, kept_);
     }
-}
-
-void ImpulseSolver::factorise() {
-    const auto rows = static_cast<Index>(active_.size());
-    factorised_ = true;
-    by_bodies_ = rows > motion_.size();
-    if (!by_bodies_) {
-        system_.resize(rows, rows);
-        for (Index r = 0; r < rows; ++r) {
-            const ConstraintRow& row = rows_[active_[static_cast<std::size_t>(r)]];
-            for (Index c = 0; c < r; ++c)
-                system_(r, c) = influence(row, rows_[active_[static_cast<std::size_t>(c)]]);
-            system_(r, r) = row.diagonal + row.compliance;
-        }
-    } else {
-        system_.setIdentity(motion_.size(), motion_.size());
-        for (const std::size_t i : active_) {
-            const ConstraintRow& row = rows_[i];
-            const auto a = 6 * static_cast<Index>(row.body);
-            system_.block<6, 6>(a, a) += row.g / row.compliance * row.g.transpose();
-            if (row.other < 0) continue;
-            const auto b = Index{6} * row.other;
-            system_.block<6, 6>(b, b) += row.g_other / row.compliance * row.g_other.transpose();
-            // The factorisation reads the lower triangle only.
-            if (a > b)
-                system_.block<6, 6>(a, b) += row.g / row.compliance * row.g_other.transpose();
-            else
-                system_.block<6, 6>(b, a) += row.g_other / row.compliance * row.g.transpose();
-        }
-    }
-    factors_.compute(system_);
-}
-
-// Adds the solution of (A + C) j = residual to the active rows' impulses.
-void ImpulseSolver::add_solution(double ConstraintRow::* impulses) {
-    if (by_bodies_) {
-        unknown_.setZero(motion_.size());
-        for (const std::size_t i : active_)
-            push(rows_[i], rows_[i].residual / rows_[i].compliance, unknown_);
-        factors_.solveInPlace(unknown_);
-        for (const std::size_t i : active_)
-            rows_[i].*impulses += (rows_[i].residual - along(rows_[i], unknown_)) / rows_[i].compliance;
-    } else {
-        unknown_.resize(static_cast<Index>(active_.size()));
-        for (std::size_t k = 0; k < active_.size(); ++k)
-            unknown_[static_cast<Index>(k)] = rows_[active_[k]].residual;
-        factors_.solveInPlace(unknown_);
-        for (std::size_t k = 0; k < active_.size(); ++k)
-            rows_[active_[k]].*impulses += unknown_[static_cast<Index>(k)];
-    }
-}
-
-void ImpulseSolver::move_by(double ConstraintRow::* impulses, Eigen::VectorXd& motion) const {
-    motion.setZero(motion_.size());
-    for (const std::size_t i : active_)
-        push(rows_[i], rows_[i].*impulses, motion);
+    move_by(&ConstraintRow::impulse, motion_);
 }
 
 void solve_impulses(std::span<RigidContact> contacts, std::span<ContactBody> bodies, double speed_scale) {

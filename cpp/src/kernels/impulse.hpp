@@ -101,6 +101,7 @@ class ImpulseSolver {
     void activate(std::size_t row);
     void find_impulses();
     void settle_active();
+    void settle_together();
     void solve_active();
     void factorise();
     void add_solution(double ConstraintRow::* impulses);

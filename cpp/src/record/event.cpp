@@ -42,7 +42,7 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
         event.manner = passes_between(scene, state, event) ? Manner::between : Manner::beside;
         return;
     }
-    // What it does is judged as it loses contact, to which its exit speed and angle belong.
+    // Stopped or redirected: by its motion as it lost contact, to which its exit speed and angle belong.
     const Vec3& exit = state.touched ? event.released_velocity : body.velocity;
     const double along = exit.dot(line_direction(event)), back = -exit.dot(event.towards),
                  exit_speed = std::hypot(exit.x(), exit.y());
@@ -59,7 +59,7 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
 }
 
 // A vehicle that was stopped or redirected has passed if it comes past an end of the barrier afterwards, on a curved path.
-// `at_end`: has the run been decided? Then it also has if it moves towards the line.
+// `at_end`: is the run over? Then a vehicle that moves towards the line has passed, too.
 void revise(const Scene& scene, const State& state, bool at_end, Event& event) {
     if (!event.left || event.touching || event.rolled_over() || runs_along_line(scene)) return;
     if (event.verdict != Verdict::stopped && event.verdict != Verdict::redirected) return;

@@ -30,9 +30,8 @@ _ADDED = (
 
 
 _LOWER_SPEEDS = (
-    "At posts a lower speed can ask for more: fronts of light vehicles soften between 0.45 and 0.9 m of "
-    "crush. Force and moment over 50 ms were up to 18 % greater at two thirds of the speed: list "
-    "impact_speeds."
+    "A lower speed can load a post more: engine zones of light vehicles soften beyond 0.45 m of crush. Force "
+    "and moment over 50 ms were up to 17 % greater at two thirds of the speed: list impact_speeds."
 )
 
 

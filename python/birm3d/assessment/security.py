@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .. import units
+from .. import _core, units
 from ..result.event import gets_past, is_open, longer_run, outcome_words
 from ..result.leaning_posts import leaning_post_lines
 from ..result.low_barrier import low_barrier_lines
@@ -114,7 +114,7 @@ SECURITY = {
 
 
 _GOES_ON = "the vehicle goes on past the barrier"
-_COASTS = 0.25
+_COASTS = _core.coasting_speed
 """At this speed [m/s] a rolling resistance of a hundredth of the weight stops a vehicle within 0.4 m.
 
 The model has no rolling resistance.

@@ -4,9 +4,10 @@ The core finds it while the run goes on (:class:`birm3d._core.Event`). So it dep
 once that is long enough, nor on histories. The vehicle *has left for good* when it moves away from every
 element of the barrier so that no rotation brings it back. Of a free-standing chain the box around it counts.
 A vehicle that goes on past the barrier must also be out of its reach. One that skids beside an end of the
-barrier is followed until its tyres turn its path no more.
+barrier is followed until its tyres turn its path no more, one that rolls past the end until it has passed.
 
-What it does then decides, except for rolling over, which counts over the whole run:
+Where it goes then decides. Whether a contained vehicle is stopped or redirected is judged as it loses contact
+for the last time, as its exit angle is. Rolling over counts over the whole run:
 
 ``overridden``
     It left past the barrier's line, or rests there. While its mass centre was past the line, the top of an
@@ -14,17 +15,17 @@ What it does then decides, except for rolling over, which counts over the whole 
     over which it crossed the line.
 ``passed``
     It left past the line, or towards it beyond the barrier's end, or rests behind the barrier out of reach.
-    So does one that was stopped or redirected, and skidded round an end of the barrier afterwards.
+    So does one that was stopped or redirected, and came past an end of the barrier afterwards.
 ``rolled_over``
     Neither of these, and an up axis was beyond 90 degrees from the vertical at some step. Vehicles that start
     more than 45 degrees from upright are not judged.
 ``redirected``
     Contained, and it leaves along the barrier, within 45 degrees of the line in its direction of travel. It
     has more than a tenth of its impact speed. Or it slides on along a straight barrier, at rest sideways. Or
-    it still slides along any barrier when a run without a duration ends after 5 s.
+    it still slides along any barrier when a run of 5 s or longer ends.
 ``stopped``
     Contained, and its motion into the barrier ended: it rebounds or rests. Or it has less than a tenth of its
-    impact speed when a run without a duration ends after 5 s.
+    impact speed when a run of 5 s or longer ends.
 ``undecided``
     The run ended before, or there is no barrier.
 

@@ -248,9 +248,9 @@ class VehicleVariants(VehicleData):
     def with_zone(self, name: str, **changes: Any) -> Self:
         """Return the vehicle with other stiffness numbers in one zone (see :class:`Zone`).
 
-        Text with a unit is taken too, as ``knee="20 cm"``. ``scale`` multiplies all stresses of a zone. With
-        ``k_initial``, ``knee`` and ``k_hardening`` an envelope becomes a knee, with ``envelope`` a knee one.
-        Such a law is a new one, as is one with all of Fig. 3 but ``f_max``: recovery and tail do not go on.
+        Text with a unit is taken too, as ``knee="20 cm"``. First ``scale`` multiplies all stresses of it.
+        ``k_initial``, ``knee`` and ``k_hardening`` replace an envelope, and ``envelope`` replaces a knee. The
+        old recovery and tail are then dropped, and where all of Fig. 3 but ``f_max`` is given.
         """
         if name not in self.zones:
             known = ", ".join(self.zones) or "none: the vehicle was made from arrays"

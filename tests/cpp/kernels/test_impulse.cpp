@@ -332,3 +332,17 @@ TEST("a body between two walls that both ask for way stays finite, and amid them
     solve_impulses(contacts, bodies, 3.0);
     CHECK_CLOSE(bodies[0].motion.velocity.x(), 0.0, 1e-6, "both are alike; impulses of 1e9 times the body's");
 }
+
+// A vehicle on a crushed side: thousands of points of one plane, of which most push by no more than rounding. They were tried one
+// by one, which took a second.
+TEST("a body lies on thousands of points") {
+    Random random;
+    std::vector<ContactBody> bodies = {
+        body(13000.0, {2e4, 1.5e5, 1.5e5}, {1.0, 0.2, -0.3}, {0.4, 0.1, 0.05})};
+    std::vector<RigidContact> rows;
+    constexpr int points = 3000;
+    for (int i = 0; i < points; ++i)
+        rows.push_back(contact({6.0 * random(), 1.2 * random(), -1.0}, Vec3::UnitZ(), 1e-4 * random()));
+    solve_impulses(rows, bodies, 20.0);
+    check_answer(rows, bodies, 1e-8);
+}

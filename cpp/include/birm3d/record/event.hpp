@@ -86,8 +86,8 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
 // Is the outcome known, with nothing still to be seen of roll, pitch and what slides? Then the event has its verdict.
 bool is_decided(const Scene& scene, const State& state, Event& event);
 
-// Gives a run its verdict that ends undecided at tolerance::longest_event or later. A vehicle that still slides along the barrier
-// is redirected, one that is slow is stopped.
+// Gives an undecided run its verdict, if it ends at tolerance::longest_event or later. A vehicle that still slides along the
+// barrier is redirected, one that is slow is stopped.
 void judge_at_longest(const Scene& scene, const State& state, Event& event);
 
 // Greatest deflections of the trusses of the skin of all units, without second trusses and treads (m).
