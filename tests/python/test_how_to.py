@@ -86,6 +86,10 @@ EXTRAS = {
 }
 
 
+def test_what_is_given_is_given_to_a_page() -> None:
+    assert GIVEN.keys() | EXTRAS.keys() <= {page.stem for page in PAGES}
+
+
 @pytest.fixture
 def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     """Presets of few nodes, unless a page asks for a mesh: this is about the calls."""
@@ -97,7 +101,8 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(birm3d.Vehicle, "preset", of_few_nodes)
 
 
-@pytest.mark.filterwarnings("ignore")  # of coarse skins, and of scenes that are chosen to be short
+# Of coarse skins, and of scenes that are chosen to be short.
+@pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_a_page_runs(page: Path, coarse: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     blocks = BLOCK.findall(page.read_text(encoding="utf-8"))

@@ -16,10 +16,10 @@ def tired(vehicle: Vehicle, **changes: float | None) -> Vehicle:
 
 
 def held_straight(vehicle: Vehicle) -> Vehicle:
-    """Return the vehicle with straight wheels that are thin discs and push nowhere as they tilt."""
+    """Return the vehicle with wheels without free steering, round treads and camber thrust."""
     return tired(vehicle, steering_time=None, camber_ratio=None, tread_radius=None)
 
 
 def quick_to_steer(vehicle: Vehicle) -> Vehicle:
-    """Return the vehicle with front wheels that follow their travel in 0.08 s: trucks tip over late."""
+    """Return the vehicle with front wheels that follow their travel in 0.08 s: trucks then fall late."""
     return tired(vehicle, steering_time=0.08)

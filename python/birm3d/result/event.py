@@ -130,7 +130,7 @@ def outcome_detail(result: RunRecord) -> str:
 
 
 def _nearing(result: RunRecord) -> str:
-    """Return a clause for a vehicle whose exit angle is negative: only its tyres turned it away later."""
+    """Return a clause for a vehicle that still neared the barrier at its last contact."""
     metrics = metrics_of(result)
     if "exit_angle" not in metrics or metrics["exit_angle"] > _CLEARLY_NEARING:
         return ""

@@ -25,7 +25,7 @@ __all__ = ["complaints_of_run", "warn_of_run"]
 def complaints_of_run(
     scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances, event: _core.Event
 ) -> Iterator[Complaint]:
-    """Return complaints: overlap, core blows, open balances, missed and low barriers, leaning posts."""
+    """Return complaints: overlap, core contact, open balances, missed and low barriers, leaning posts."""
     return chain(
         overlaps(scene, statistics),
         core_complaints(scene, statistics),
