@@ -75,6 +75,7 @@ void register_settings(py::module_& m) {
         .def(py::init(&settings_from), py::arg("values"));
     // s: so long a run goes on once its outcome is known.
     m.attr("tail_duration") = tolerance::tail_duration;
+    // m/s: a slower vehicle counts as at rest.
     m.attr("coasting_speed") = tolerance::coasting_speed;
     m.attr("along_line") = tolerance::along_line;
 }

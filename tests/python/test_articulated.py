@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from birm3d import ArticulatedVehicle, Barrier, Joint, Result, Settings, Simulation, Vehicle, scenes
 from birm3d.base.fingerprint import fingerprint
-from birm3d.result.report import fold_text
+from birm3d.result.report import _fold_text
 from birm3d.scene_parameters import parameter_names, value_of, varied
 from birm3d.vehicle import build
 
@@ -345,7 +345,7 @@ def test_the_report_and_the_table_tell_of_the_joint() -> None:
     assert "fifth_wheel: peak 50-ms mean of the force" in result.report()
     assert "contact of the two units with each other" in result.report()
     assert "would meet" not in result.report()
-    assert "the units would meet, which is not computed" in fold_text(93.0)
+    assert "the units would meet, which is not computed" in _fold_text(93.0)
     table = result.to_dataframe()
     assert {"joint_force_x [N]", "articulation_angle [deg]", "energy_joints [J]"} <= set(table.columns)
 

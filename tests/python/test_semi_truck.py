@@ -79,7 +79,7 @@ def test_the_trailer_pushes_the_tractor(semi: Vehicle, crash: dict) -> None:
     # On the leading unit forwards what takes the trailer's momentum; its tyres roll freely.
     assert along == pytest.approx(-trailer.mass * change, rel=1e-6)
     assert along > 0.0
-    assert result.metrics["peak_joint_force_50ms"] > 5e5
+    assert result.metrics["peak_joint_force_50ms"] > 1e6
     for kind in ("fifth_wheel", "welded"):
         assert abs(crash[kind].metrics["energy_residual"]) < 5e-3
         assert crash[kind].metrics["momentum_residual"] < 1e-9

@@ -14,8 +14,8 @@ from stand_in import name_of, stand_in
 NAME = "redirection"
 TITLE = "Oblique impact on walls and concrete barriers"
 TEXT = """Vehicles: the stand-in of the class with the test's mass. Barriers: rigid, fixed, friction 0.2.
-But for the roll of 2214NJ-2 (101 degrees), no measured force, exit angle or roll could be read in a source;
-forces as commonly reported, whose sources are not at hand, are printed apart. What can be checked: the
+Of measured forces, exit angles and rolls, only the roll of 2214NJ-2 could be read in a source: 101 degrees.
+Forces as commonly reported, whose sources are not at hand, are printed apart. What can be checked: the
 change of momentum across the barrier when the vehicle has left it, or at the end of the run, over the
 momentum towards it, m v sin(angle). It is 1 + e. No test of the table gives it. A restitution e from 0 to
 0.3 is taken to be right, so the column "measured" has 1.15, which is expected and not measured. Whether the

@@ -186,14 +186,13 @@ void ImpulseSolver::find_impulses() {
                 fewest = violated;
             else
                 --rounds_together;
-            const std::vector<std::size_t> joined(active_.end() - static_cast<std::ptrdiff_t>(violated),
-                                                  active_.end());
+            joined_.assign(active_.end() - static_cast<std::ptrdiff_t>(violated), active_.end());
             settle_together();
             // Of rows that are violated, some would push. If none does, they are violated by rounding only.
-            const bool none_pushes =
-                std::none_of(joined.begin(), joined.end(), [this](std::size_t i) { return rows_[i].active; });
-            for (const std::size_t i : joined)
-                rows_[i].settled = rows_[i].settled || none_pushes;
+            const bool none_pushes = std::none_of(joined_.begin(), joined_.end(),
+                                                  [this](std::size_t i) { return rows_[i].active; });
+            for (const std::size_t i : joined_)
+                rows_[i].settled = none_pushes;
             continue;
         }
         activate(worst);

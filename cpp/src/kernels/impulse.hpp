@@ -117,7 +117,7 @@ class ImpulseSolver {
     double tolerance_ = 0.0;           // of velocities (m/s)
     std::vector<Root> roots_;          // (bodies)
     std::vector<ConstraintRow> rows_;  // (contacts)
-    std::vector<std::size_t> active_, kept_;
+    std::vector<std::size_t> active_, kept_, joined_;
     bool by_bodies_ = false;   // are the factors those of the bodies' system, or of the rows'?
     bool factorised_ = false;  // are they those of the active rows?
     // Of some matrix at first: without one, its status is not set, and must not be copied.

@@ -82,7 +82,7 @@ BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& indentatio
 }
 
 // Gap of nodes that do not push (m): e - D, with D of kernels/indentation.hpp. A node inside is at most as deep as the post drew
-// it in within the step. Beside the face of a wall, its edge holds no node. Where the panel ends above the top, no node is drawn in.
+// it in within the step. Beside the face of a wall, its edge holds no node. Where the panel ends above the top, none is drawn in.
 BIRM3D_INLINE Packet gap_of_free(const IndentationNumbers& indentation, const KnownFaces& known,
                                  const NodePlace& place, const FollowedPlace& followed, const Packet& outward,
                                  std::size_t i) {
@@ -102,8 +102,8 @@ BIRM3D_INLINE Packet gap_of_loaded(const IndentationNumbers& indentation, const 
     return where_above(zero, followed.gap, outward, unless_held);
 }
 
-// 1 where the indentation extends over a node, else 0: D is beyond the panel's outermost node there, and the panel comes down below
-// the top of the post or the face.
+// 1 where the indentation extends over a node, else 0: D is beyond the panel's outermost node there, and the panel comes down
+// below the top of the post or the face.
 BIRM3D_INLINE Packet extends_over(const IndentationNumbers& indentation, const KnownFaces& known,
                                   const NodePlace& place, const FollowedPlace& followed, std::size_t i) {
     const Packet zero = 0.0, one = 1.0, surface = indentation.surface,

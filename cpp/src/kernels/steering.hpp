@@ -2,8 +2,8 @@
 //
 // Nobody holds the steering wheel of a vehicle in a test, or of one whose driver is hit. The side force of a steered
 // tyre acts behind its kingpin, and turns it until the force is gone. Inertia, friction of the steering gear and power
-// steering delay that: by a tenth of a second in light vehicles, by half a second in trucks. So the angle d of the wheels follows the travel angle b of their centres with the lag T of a first
-// order:
+// steering delay that: by a tenth of a second in light vehicles, by half a second in trucks. So the angle d of the wheels
+// follows the travel angle b of their centres with the lag T of a first order:
 //     d' = (b - d) / T,   |d| <= the stops.
 // A tie rod couples the wheels of a unit: they share one angle, and b is their mean, weighted by what they carry.
 #pragma once

@@ -66,12 +66,12 @@ void count_step(const Scene& scene, const Trial& accepted, State& state) {
     }
     statistics.body_steps += accepted.body_held();
     note_core_impulse(scene, accepted, state);
-    for (const UnitState& unit : state.units)
+    statistics.wheels_given_way = 0;
+    for (const UnitState& unit : state.units) {
+        statistics.wheels_given_way += static_cast<std::uint64_t>(std::popcount(unit.given_way));
         if (state.touched)
             statistics.fastest_rise = std::max(statistics.fastest_rise, unit.body.velocity.z());
-    statistics.wheels_given_way = 0;
-    for (const UnitState& unit : state.units)
-        statistics.wheels_given_way += static_cast<std::uint64_t>(std::popcount(unit.given_way));
+    }
 }
 
 }  // namespace birm3d

@@ -10,9 +10,8 @@ import numpy as np
 from ..barrier.barrier import Barrier
 from ..barrier.kinds import Bollards
 from ..result.element_loads import ElementLoad, touched_elements
-from ..result.leaning_posts import leaning_post_lines
-from ..result.low_barrier import low_barrier_lines
 from ..result.result import Result
+from ..result.run_warnings import doubt_lines
 from ..signals.filters import cfc
 from .element_design import peak_filter
 from .vehicles import HEAVY_KG
@@ -105,8 +104,7 @@ def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:
     found[_TIPS] = _tipping(result)
     if loads and height_caution(result):
         found[_LOW] = ("the barrier",)
-    for line in (*low_barrier_lines(result), *leaning_post_lines(result)):
-        found[line] = ("the barrier",)
+    found |= {line: ("the barrier",) for line in doubt_lines(result)}
     if result.outcome == "undecided":
         found[_UNDECIDED] = ("the barrier",)
     elif not loads:

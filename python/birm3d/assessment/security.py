@@ -16,8 +16,7 @@ import numpy as np
 
 from .. import _core, units
 from ..result.event import gets_past, is_open, longer_run, outcome_words
-from ..result.leaning_posts import leaning_post_lines
-from ..result.low_barrier import low_barrier_lines
+from ..result.run_warnings import doubt_lines
 from ..vehicle.joint import LONGEST_SLIP
 from .criteria import Criterion
 from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
@@ -174,8 +173,7 @@ def rate_security(
         (mass, *rows[:-1], measured, rows[-1], became),
         " ".join(
             [
-                *low_barrier_lines(result),
-                *leaning_post_lines(result),
+                *doubt_lines(result),
                 *tipping_lines(result),
                 standard.caution,
                 *_of_bed(result),

@@ -37,12 +37,18 @@ The mass centre is that of the leading unit.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .metric_functions import angle_of_exit
 from .metrics import METRIC_UNITS, compute_metrics
 from .record import RunRecord
+
+if TYPE_CHECKING:
+    from .. import _core
+    from ..barrier.barrier import Barrier
+    from .stored import Stored
 
 __all__ = [
     "DECIDED",
@@ -126,15 +132,15 @@ def outcome_detail(result: RunRecord) -> str:
         return f"it passed {past}, {'touching it' if touched else 'untouched'}{rolled}"
     if event.manner == "over" and not touched:
         return f"{_MANNERS['over']} untouched: wheels meet nothing ahead of them in this model{rolled}"
-    return _MANNERS[event.manner] + _nearing(result) + rolled
+    return _MANNERS[event.manner] + _nearing(event, result.scene.barrier) + rolled
 
 
-def _nearing(result: RunRecord) -> str:
+def _nearing(event: _core.Event | Stored, barrier: Barrier | None) -> str:
     """Return a clause for a vehicle that still neared the barrier at its last contact."""
-    metrics = metrics_of(result)
-    if "exit_angle" not in metrics or metrics["exit_angle"] > _CLEARLY_NEARING:
+    assert barrier is not None  # without one there is no such manner
+    angle = angle_of_exit(event, barrier)
+    if angle is None or angle > _CLEARLY_NEARING:
         return ""
-    angle = metrics["exit_angle"]
     return f", though at the last contact its mass centre still neared the barrier, at {-angle:.1f} degrees"
 
 

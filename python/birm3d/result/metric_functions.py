@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 from .run_values import RunValues, Vector
 
+if TYPE_CHECKING:
+    from .. import _core
+    from ..barrier.barrier import Barrier
+    from .stored import Stored
+
 __all__ = [
+    "angle_of_exit",
     "contact_overlap",
     "exit_angle",
     "exit_speed",
@@ -58,8 +65,13 @@ def exit_speed(run: RunValues) -> float | None:
 def exit_angle(run: RunValues) -> float | None:
     """Of the path of a contained vehicle from the line, positive away from it [deg]."""
     assert run.barrier is not None
-    velocity, past = run.event.exit_velocity, run.barrier._past
-    contained = run.event.manner in ("rebounds", "leaves", "slides_to_end", "slides_on")
+    return angle_of_exit(run.event, run.barrier)
+
+
+def angle_of_exit(event: _core.Event | Stored, barrier: Barrier) -> float | None:
+    """Return that angle [deg]; ``None`` of a vehicle that does not leave on the traffic side."""
+    velocity, past = event.exit_velocity, barrier._past
+    contained = event.manner in ("rebounds", "leaves", "slides_to_end", "slides_on")
     if velocity is None or not contained or math.hypot(*velocity[:2]) < _SLOWEST:
         return None
     away = -_dot(velocity, past)

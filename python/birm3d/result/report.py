@@ -12,15 +12,14 @@ from ..vehicle.title import vehicle_text
 from .core_contact import core_lines
 from .element_loads import touched_elements
 from .event import outcome_words
-from .leaning_posts import leaning_post_lines
-from .low_barrier import low_barrier_lines
 from .omitted import omitted_lines
+from .run_warnings import doubt_lines
 
 if TYPE_CHECKING:
     from ..barrier.barrier import Barrier
     from .analysis import RunAnalysis
 
-__all__ = ["END_REASONS", "fold_text", "report"]
+__all__ = ["END_REASONS", "report"]
 
 END_REASONS = {
     "separated": "the vehicle has left the barrier and can not come back",
@@ -65,12 +64,12 @@ def report(result: RunAnalysis) -> str:
         f"initial kinetic energy, momentum residual {metrics['momentum_residual']:.1e}",
     ]
     lines += core_lines(result)
-    lines += [f"  {line}" for line in (*low_barrier_lines(result), *leaning_post_lines(result))]
+    lines += [f"  {line}" for line in doubt_lines(result)]
     if vehicle.joint is not None:
         lines.append(
             f"  {vehicle.joint.kind}: peak 50-ms mean of the force "
             f"{metrics['peak_joint_force_50ms'] / 1e3:.3g} kN, greatest articulation angle "
-            f"{metrics['max_articulation_angle']:.1f} deg{fold_text(metrics['max_articulation_angle'])}"
+            f"{metrics['max_articulation_angle']:.1f} deg{_fold_text(metrics['max_articulation_angle'])}"
             + (_slip_text(metrics["bed_slip"]) if vehicle.slides else "")
         )
     if "barrier_deflection" in metrics:
@@ -92,8 +91,7 @@ def report(result: RunAnalysis) -> str:
     return "\n".join(lines)
 
 
-def fold_text(angle: float) -> str:
-    """Return a clause for units that fold so far that they would meet [deg]."""
+def _fold_text(angle: float) -> str:
     return ", so that the units would meet, which is not computed" if angle > _UNITS_MEET else ""
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from .core_contact import core_complaints
 from .energy_balance import open_balances
-from .leaning_posts import leaning_posts
-from .low_barrier import low_barrier
+from .leaning_posts import leaning_post_lines, leaning_posts
+from .low_barrier import low_barrier, low_barrier_lines
 from .missed import missed_barrier
 from .overlap import overlaps
 
@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from .. import _core
     from ..base.complaints import Complaint
     from ..scene.scene import Scene
+    from .analysis import RunAnalysis
 
-__all__ = ["complaints_of_run", "warn_of_run"]
+__all__ = ["complaints_of_run", "doubt_lines", "warn_of_run"]
 
 
 def complaints_of_run(
@@ -34,6 +35,12 @@ def complaints_of_run(
         low_barrier(scene, event),
         leaning_posts(scene, statistics),
     )
+
+
+def doubt_lines(result: RunAnalysis) -> Iterator[str]:
+    """Yield why the outcome can not be relied on, for cautions and reports."""
+    yield from low_barrier_lines(result)
+    yield from leaning_post_lines(result)
 
 
 def warn_of_run(

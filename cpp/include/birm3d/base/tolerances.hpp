@@ -156,7 +156,8 @@ inline constexpr double rest_duration = 0.25;
 // A vehicle slower than this share of its approach speed is stopped, not redirected.
 inline constexpr double stopped_share = 0.1;
 
-// A vehicle that is slower than this coasts on its wheels, and counts as at rest (m/s). Ratings use it, too. Large: a vehicle that rolls past the end of a barrier is stopped. Small: runs end late.
+// A vehicle that is slower than this coasts on its wheels, and counts as at rest (m/s). Ratings use it, too. Large: a vehicle
+// that rolls past the end of a barrier is stopped. Small: runs end late.
 inline constexpr double coasting_speed = 0.25;
 
 // The instant at which the outcome of a run is decided is found to within this (s).

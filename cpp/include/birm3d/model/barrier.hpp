@@ -42,8 +42,7 @@ struct Barrier {
     static Barrier pole(double friction, const Vec3& origin, double heading, double radius);
 
     Vec3 normal() const;  // of the barrier's line, towards the traffic
-    double top()
-        const;  // greatest height above the ground (m); infinite for half-spaces and posts without a top
+    double top() const;   // greatest height above the ground (m); infinite for half-spaces and endless posts
 
     std::vector<Element> elements;
     double friction;  // Coulomb coefficient vehicle-barrier (paper 5.4: 0.15 to 0.20 steel on concrete)
