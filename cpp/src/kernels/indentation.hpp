@@ -11,9 +11,12 @@
 // the panel, so that an indentation stays where it was made. The factor k scales the sideways displacement by the flank. It is
 // 0.35 for a post, chosen by hand: the sheet's tension on one flank balances a part of that on the other. On the open side of
 // an edge that stands beside the rails it is edge_flank_factor. Before a face that is nearly parallel to the panel, that face
-// holds the skin. Once D has reached a node, its depth u follows the velocity v of the post:
-//   du = g (1 - ds/dd |w - w*|) dv_e + g k sin(flank) dv_w
-// v_e is that of the post's deepest place at the node's height; v_w is across the post, away from the node. A post whose
+// holds the skin. Along a post that leans by the slope t, a front slides as on a wedge while t is small. Where t is large, it has
+// folded round the post and climbs it with k of its force at most. Once D has reached a node, its depth u follows the velocity v
+// of the post:
+//   du = g (1 - ds/dd |w - w*|) (dv_e - t / sqrt(1 + (t/k)^2) dv_l) + g k sin(flank) dv_w
+// v_e and v_l are those of the post's deepest place at the node's height, v_l upwards; v_w is across the post, away from the node.
+// Above the post's top v_e is the top's, and v_l does not count. A post whose
 // axis is `off` beyond the panel's edge touches that edge with its flank. What it pushes there goes in by the square of the
 // flank's cosine, g = 1 - (off / radius)^2. So a load ends where the whole post is beside the panel.
 //

@@ -138,15 +138,33 @@ BIRM3D_INLINE FollowingRate following_rate(const IndentationNumbers& indentation
             factor * flank / square_root(1.0 + flank * flank), indentation.grip * followed.on_face};
 }
 
+// Displacement along e by which a node follows a post more than a wedge, for each unit that the post moves along the panel: what
+// along_factor leaves out. Above the top it is zero.
+BIRM3D_INLINE Packet rate_held_along(const IndentationNumbers& post, const NodePlace& place,
+                                     const FollowingRate& rate) {
+    const Packet zero = 0.0;
+    return where_above(place.l, place.post_l, zero, (1.0 - post.along_factor) * post.tilt * rate.in);
+}
+
+// Displacement along the panel within the step, of the place on the post before each node (m): as the foot moves and as the post
+// turns in the plane of e and l.
+BIRM3D_INLINE Packet slid_along(const IndentationNumbers& post, const IndentationNumbers& post_then,
+                                const NodePlace& now, const NodePlace& then) {
+    const double turn = (post.tilt - post_then.tilt) * post.per_stretch * post_then.per_stretch;
+    return (then.l - now.l) - (0.5 * turn) * (now.deepest + then.deepest);
+}
+
 // Outward displacement of nodes along e within the step (m): -du of kernels/indentation.hpp, by the trapezoid rule. `flatter`:
 // by how much the slope of the edge's face has become less.
-BIRM3D_INLINE Packet outward_displacement(const NodePlace& now, const NodePlace& then,
+BIRM3D_INLINE Packet outward_displacement(const IndentationNumbers& post, const IndentationNumbers& post_then,
+                                          const NodePlace& now, const NodePlace& then,
                                           const FollowingRate& at_end, const FollowingRate& at_start,
                                           const Packet& flatter) {
     const Packet zero = 0.0, in = (now.deepest - now.e) - (then.deepest - then.e), across = now.w - then.w;
     const Packet turn = where_above(lesser(at_end.by_turn, at_start.by_turn), zero, flatter, zero);
-    return -0.5 * ((at_end.in + at_start.in) * in + (at_end.across + at_start.across) * across +
-                   (at_end.by_turn + at_start.by_turn) * turn);
+    const Packet held = rate_held_along(post, now, at_end) + rate_held_along(post_then, then, at_start);
+    return -0.5 * ((at_end.in + at_start.in) * in + held * slid_along(post, post_then, now, then) +
+                   (at_end.across + at_start.across) * across + (at_end.by_turn + at_start.by_turn) * turn);
 }
 
 // Vectors in body axes, one for each node of a packet.
@@ -172,7 +190,7 @@ BIRM3D_INLINE Push push_of(const IndentationNumbers& indentation, const NodePlac
     const Packet zero = 0.0, over = place.l - place.post_l;
     const Packet slope = where_above(over, zero, indentation.edge_slope, indentation.face_slope);
     return {rate.in, rate.across + slope * rate.in,
-            where_above(over, zero, zero, rate.in * indentation.tilt)};
+            where_above(over, zero, zero, rate.in * (indentation.along_factor * indentation.tilt))};
 }
 
 // Displacement of nodes along e for a unit rotation of the post about its foot: by its rotation about e, by the tilt of its axis
@@ -184,8 +202,10 @@ BIRM3D_INLINE Vectors turn_of_post(const IndentationNumbers& indentation, const 
     const double tilt = indentation.tilt, stretch = indentation.stretch;
     const EdgeSide &low = indentation.side_low, &high = indentation.side_high;
     const Packet about = push.l * place.w - push.w * place.l;
-    const Packet leaning = push.e * (stretch * stretch * place.post_l + stretch * tilt * indentation.radius +
-                                     where_above(place.l, top, tilt * top_leans, zero));
+    const Packet one = 1.0, share = where_above(place.l, place.post_l, one, indentation.along_factor);
+    const Packet leaning =
+        push.e * (place.post_l + share * tilt * (tilt * place.post_l + stretch * indentation.radius) +
+                  where_above(place.l, top, tilt * top_leans, zero));
     const Packet by_l = by_turn * where_above(place.w, zero, high.turn_l, low.turn_l),
                  by_w = leaning + by_turn * where_above(place.w, zero, high.turn_w, low.turn_w);
     return {about * (tilt * indentation.lx - indentation.ex) + by_w * indentation.wx + by_l * indentation.lx,

@@ -202,7 +202,8 @@ void find_indentation(const IndentationNumbers& indentation, const IndentationNu
         const FollowingRate rate = following_rate(indentation, followed),
                             rate_before = following_rate(then, find_followed(then, place_before));
         const Packet flatter = slope_of_face(then, place_before) - slope_of_face(indentation, place);
-        const Packet outward = outward_displacement(place, place_before, rate, rate_before, flatter);
+        const Packet outward =
+            outward_displacement(indentation, then, place, place_before, rate, rate_before, flatter);
         const RequiredGap required = required_gap(indentation, nodes, known, place, followed, outward, i);
         const Packet state =
             find_state(indentation, nodes, known, place, followed, place_before, required, i);

@@ -48,8 +48,8 @@ _STANDS = " At {value:,.0f} kg max_overturning_ratio is {ratio:.2f}: no segment 
 _YIELDS = (
     "Computed, not tested. Tubes do not buckle or tear, whatever their D/t, and have the yield stress that "
     "they were given: look at post_tilt too. Where posts tilt far, a few percent of strength decide whether "
-    "a vehicle is held or rides over: leave a margin. Leaning posts are ramps in this model, which a real "
-    "front that folds round a tube may not climb."
+    "a vehicle is held or rides over: leave a margin. How firmly a front that has folded round a leaning "
+    "post holds to it is not known from any test."
 )
 
 

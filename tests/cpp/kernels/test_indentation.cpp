@@ -191,6 +191,24 @@ TEST("force and torque are what the ways of the nodes ask for by virtual work") 
     CHECK(held > 10000);
 }
 
+TEST(
+    "along a post that leans the push is that of a wedge at first, and 0.35 of the push into the panel at "
+    "most") {
+    const Post post(0.2, 3.0);
+    for (const double lean : {-0.9, -0.3, -0.02, 0.02, 0.3, 0.9}) {
+        const Placement stands = standing({2.0, 0.0, -1.0}, lean);
+        const Followed found = indentation_by(post, stands, stands, 2.0, 1.0);
+        const double slope = -std::tan(lean), expected = slope / std::hypot(1.0, slope / 0.35);
+        int held = 0;
+        for (std::size_t i = 0; i < block_size; ++i) {
+            if (found.follows[i] != 1.0) continue;
+            ++held;
+            CHECK_CLOSE(found.nz[i] / found.nx[i], expected, 1e-12, "rounding");
+        }
+        CHECK(held > 0);
+    }
+}
+
 // The edge of a block whose traffic face is turned by `yaw` from the panel (rad).
 Placement edge_at(const Vec3& foot, double yaw, double lean = 0.0, double sway = 0.0) {
     const Quat turn = Eigen::AngleAxisd(yaw, Vec3::UnitZ()) * Eigen::AngleAxisd(lean, Vec3::UnitY()) *
