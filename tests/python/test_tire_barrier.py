@@ -207,7 +207,8 @@ def test_more_friction_lifts_a_rolling_wheel_more(speed, angle, time):
     """Its tread goes down in front."""
     heights = [height_on_toe(speed, angle, time, mu) for mu in (0.0, 0.3, 0.6, 0.9)]
     assert heights[0] > 1e-3  # the slope itself
-    assert (np.diff(heights) > 0.05 * heights[0]).all(), heights
+    assert (np.diff(heights) > 0.0).all(), heights
+    assert heights[-1] > 1.1 * heights[0]
 
 
 @pytest.mark.parametrize(("speed", "angle", "time"), ON_TOE)

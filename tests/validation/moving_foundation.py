@@ -17,7 +17,7 @@ SOLID = {"wall_thickness": 0.5 * DIAMETER, "yield_stress": 1e9}  # stronger than
 
 def main() -> None:
     truck = Vehicle.preset("cargo_truck", gvw=6804.0)
-    print("moment [kN m]  bed past the rear face [m], at most  at the end  tilt [deg]  last speed [m/s]  outcome")
+    print("moment [kN m]  bed past the rear face, at most [m]  at the end  tilt [deg]  last [m/s]  outcome")
     for moment in MOMENTS:
         yields = {} if moment is None else SOLID | {"foundation": Foundation(moment, 0.5, mass=3000.0)}
         post = Barrier.bollards(count=1, diameter=DIAMETER, height=HEIGHT, **yields)
@@ -25,7 +25,8 @@ def main() -> None:
         bed = run.sensor("load_bed_leading_edge").position[:, 0] - 0.5 * DIAMETER
         tilt = run.metrics["post_tilt"] if moment else 0.0
         name = "rigid" if moment is None else f"{moment / 1e3:.0f}"
-        print(f"{name:>13s}  {bed.max():35.2f}  {bed[-1]:10.2f}  {tilt:10.0f}  {run.final_velocity[0]:16.1f}  {run.outcome}")
+        last = run.final_velocity[0]
+        print(f"{name:>13s}  {bed.max():35.2f}  {bed[-1]:10.2f}  {tilt:10.0f}  {last:10.1f}  {run.outcome}")
 
 
 if __name__ == "__main__":

@@ -39,8 +39,8 @@ def leaning_post_lines(result: RunAnalysis) -> Iterator[str]:
     """Yield the warning for cautions and reports, if there is one."""
     if _throws(result.scene, result.statistics):
         yield (
-            f"Leaning posts throw the vehicle up at {result.statistics.fastest_rise:.1f} m/s. How "
-            "firmly a real front that has folded round a post holds to it is not known. Do not rely on the outcome."
+            f"Leaning posts throw the vehicle up at {result.statistics.fastest_rise:.1f} m/s. How firmly a "
+            "real front holds to a post that leans is not known. Do not rely on the outcome."
         )
 
 
