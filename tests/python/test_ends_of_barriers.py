@@ -76,7 +76,7 @@ def test_the_sentence_says_which_unit_rolled_over() -> None:
 def test_an_undecided_run_of_the_longest_duration_asks_for_a_longer_one() -> None:
     """It asked for duration=None, which the run had."""
     truck = quick_to_steer(Vehicle.preset("mash_10000s"))
-    result = Simulation(truck, Barrier.rigid_wall(height=0.3), units.km_h(90.0), 15.0).run()
+    result = Simulation(truck, Barrier.rigid_wall(height=0.35), units.km_h(90.0), 15.0).run()
     assert result.end_reason == "longest"
     with pytest.raises(ValueError, match=r"\(a duration above 5 s\), got one that ends at 5 s"):
         rate(result, "MASH")

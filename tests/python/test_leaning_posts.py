@@ -38,7 +38,7 @@ def test_higher_posts_that_lean_stop_a_van_that_lower_ones_stop() -> None:
         assert up < 0.35 * forward
 
 
-@pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning")
+@pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning", "ignore::birm3d.CoreContactWarning")
 def test_rigid_posts_are_not() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", LeaningPostWarning)

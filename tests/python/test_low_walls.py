@@ -46,7 +46,7 @@ def test_the_force_grows_with_the_height_until_the_front_is_covered() -> None:
         until = way <= 0.6
         means.append(np.trapezoid(-result.barrier_force[until, 0], way[until]) / 0.6)
     assert (np.diff(means) > -0.002 * means[-1]).all()
-    assert means[0] < 0.55 * means[-1], "measured: 0.51"
+    assert means[0] < 0.25 * means[-1], "measured: 0.20"
     assert means[-2] > 0.99 * means[-1]
 
 
@@ -54,7 +54,8 @@ def test_the_travel_does_not_jump_as_the_top_passes_a_row_of_nodes() -> None:
     """Once it fell from 1.49 to 0.77 m between heights of 0.60 and 0.61 m."""
     heights = np.arange(0.5, 0.81, 0.02)
     travel = [at(Barrier.rigid_wall(height=h)).metrics["max_displacement"] for h in heights]
-    assert np.abs(np.diff(travel)).max() < 0.05 * travel[0]
+    assert (np.diff(travel) < 0.001).all()
+    assert np.abs(np.diff(travel, 2)).max() < 0.03 * travel[0], "measured: 0.020 m of 0.97"
 
 
 def test_energy_converges_as_skin_sinks_below_the_top() -> None:

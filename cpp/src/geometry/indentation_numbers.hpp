@@ -26,6 +26,7 @@ struct IndentationNumbers {
     // Of a face for each unit of w; of a post zero: l of the top edge, e of the face and e of the edge.
     double top_slope = 0.0, face_slope = 0.0, edge_slope = 0.0;
     bool is_face = false;
+    double steeper;   // slope of the skin above the top, over that beside the post
     double top_rate;  // of `top`, for each unit of change of the axis's part along e
     double upward;    // l of the body's upward axis
     // Added to the overlap of post and panel in height: zero, or a great length where the vehicle is tilted so far that the

@@ -31,6 +31,10 @@ constexpr double post_flank = 0.35;
 // passes the rounded corner of a front without load. Large: a post beside a bumper draws it in before anything is met.
 constexpr double least_outline_depth = 0.2;
 
+// How far above the top of a post or a wall a deep indentation draws in the skin (m). Bumpers and rails are 0.15 to 0.25 m high:
+// what loads their lower edge loads them whole, and nothing as stiff ties them to what is above. No test has measured it.
+constexpr double reach_above = 0.2;
+
 // `side`: 1 on the open side of an edge, -1 before its wall, 0 on the flank of a post. Before the wall the factor is zero: the
 // wall's face holds the skin there.
 double flank_factor(double side, double open_flank) {
@@ -79,6 +83,7 @@ void Indentation::set_axes(const Vec3& foot, const Vec3& axis_up, const Panel& p
     tilt = stretch * leaning;
     surface = (panel.box.center - foot).dot(e) - panel.box.half.dot(e.cwiseAbs());
     per_reach = 1.0 / length;
+    steeper = std::max(1.0, length / reach_above);
     upward = lz;
     edge_allowance = upward > least_upright ? 0.0 : no_edge;
 }
@@ -241,8 +246,8 @@ BoxInIndentation box_in_indentation(const Indentation& indentation, const Box& b
     if (indentation.is_face && (off > 0.0 || (l.high <= tops.low - at_edge && !hangs)))
         return {outermost, depth, -infinity};
     return {outermost, depth,
-            most_drawn_in(depth, off + std::max(l.low - tops.high, 0.0), indentation.length,
-                          flattest_face(indentation))};
+            most_drawn_in(depth, off + indentation.steeper * std::max(l.low - tops.high, 0.0),
+                          indentation.length, flattest_face(indentation))};
 }
 
 }  // namespace

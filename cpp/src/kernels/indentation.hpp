@@ -3,8 +3,9 @@
 //
 // The panel's direction e points into the vehicle. Seen along e, the post reaches to a depth f over the panel. The skin
 // beside a post that goes straight in comes to
-//   D(w, l) = max over places (w*, l*) of the post in front of the panel of  f(w*, l*) - s |w - w*| - s (l - l*)+
-// with w across the post's axis and l along it, upwards. The slope grows with the depth d of the post,
+//   D(w, l) = max over places (w*, l*) of the post in front of the panel of  f(w*, l*) - s |w - w*| - m s (l - l*)+
+// with w across the post's axis and l along it, upwards. Above its top the skin falls off m times as steeply: a deep indentation
+// reaches 0.2 m up, the height of bumpers and rails. The slope grows with the depth d of the post,
 // s = sqrt(s0^2 + (d / length)^2): beams and panels carry a deep indentation about as far to either side as a shallow one.
 //
 // The sheet beside a post is held by tension and shear. It goes in with the post, straight along e. It is not carried along
@@ -49,9 +50,9 @@
 // panel that rises above the top leaves the post or the face, as a vehicle does that pushes a post over.
 //
 // A vertical face with a top edge (top_edge.hpp) holds the skin before it, and draws in the skin above its top:
-//   D(w, l) = E(w) - s (l - top)+
+//   D(w, l) = E(w) - m s (l - top)+
 // E is the place of the edge along e, a line that may be oblique to the panel. The skin goes in with the edge, straight along e,
-// by du = (1 - ds/dd (l - top)) dE. The force follows by virtual work, as that of a post. The skin does
+// by du = (1 - m ds/dd (l - top)) dE. The force follows by virtual work, as that of a post. The skin does
 // not slide over the edge as over a wedge. Skin that sinks below the edge while it hangs over it stays with the edge. Beside the
 // face's ends nothing is drawn in; rounded edges there are posts.
 //

@@ -3,8 +3,9 @@
 //
 // Symbols of kernels/indentation.hpp and their names here:
 //   e, w, l   into the panel, across the post and along it         w*, f       FollowedPlace::w, FollowedPlace::e
-//   s, ds/dd  Slope::slope, Slope::grows                           |w - w*|    FollowedPlace::beyond, with (l - l*)+ added
+//   s, ds/dd  Slope::slope, Slope::grows                           |w - w*|    FollowedPlace::beyond, with m (l - l*)+ added
 //   q         slope_of_face()                                      e - D       FollowedPlace::gap
+//   m         steeper
 //   g, g k    grip, and flank_low or flank_high times grip         -du         outward_displacement()
 #pragma once
 
@@ -62,7 +63,7 @@ BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& indentation, const N
     const Packet zero = 0.0, by_depth = (place.deepest - indentation.surface) * indentation.per_reach;
     const Packet slope = lesser(lesser(greater(by_depth, least_slope), steepest), flattest_face(indentation));
     const Packet beside = greater(greater(place.w - indentation.most_w, indentation.least_w - place.w), zero);
-    return place.e - (place.deepest - slope * (beside + (place.l - place.post_l)));
+    return place.e - (place.deepest - slope * (beside + indentation.steeper * (place.l - place.post_l)));
 }
 
 // The point of the post that each node of a packet follows.
@@ -84,7 +85,7 @@ BIRM3D_INLINE FollowedPlace follow_edge(const IndentationNumbers& indentation, c
     followed.w = place.w;
     followed.rise = {0.0, 0.0};
     followed.e = place.deepest;
-    followed.beyond = place.l - place.post_l;
+    followed.beyond = indentation.steeper * (place.l - place.post_l);
     followed.on_face = 0.0;
     followed.alone = 0.0;
     followed.gap = place.e - (followed.e - followed.slope.slope * followed.beyond);
@@ -114,7 +115,7 @@ BIRM3D_INLINE FollowedPlace find_followed(const IndentationNumbers& indentation,
     followed.rise = rise_at(indentation, followed.w);
     followed.e = indentation.tilt * place.post_l + followed.rise.rise;
     const Packet beside = where_above(place.w, followed.w, place.w - followed.w, followed.w - place.w);
-    followed.beyond = beside + (place.l - place.post_l);
+    followed.beyond = beside + indentation.steeper * (place.l - place.post_l);
     const Packet other_side = where_above(place.w, zero, -1.0 * low, high);
     followed.on_face = where_above(free.slope, of_face, beside, zero);
     followed.alone = where_above(free.slope, of_face, beside - other_side, -1.0 * other_side);

@@ -202,13 +202,13 @@ class VehicleVariants(VehicleData):
     def with_indentation_length(self, indentation_length: Quantity) -> Self:
         """Return the vehicle with a skin that a post draws in beside itself; at 0 that is left out.
 
-        A post (bollard, pole) at the depth d in a front, side or rear draws in the skin beside and above it.
+        A post (bollard, pole) at the depth d in a front, side or rear draws in the skin beside it.
         The slope of this indentation is about d / indentation_length, at first touch 0.25. So it extends
         about indentation_length [m] beyond the post, as far as the beams and panels there carry; ``>= 0``.
         The paper's trusses are independent of each other, so that a narrow post passes between them to the
         rigid core.
-        Rounded edges of walls draw in the skin beside them, and tops of walls the skin above them. Meshes do
-        not.
+        Rounded edges of walls draw in the skin beside them. Tops of walls and posts draw in skin up to 0.2 m
+        above them. Meshes do not.
         """
         length = given("indentation_length", indentation_length)
         return self._changed(self._description.each(indentation_length=length))
