@@ -92,6 +92,8 @@ void register_simulation(py::module_& m) {
                       "s, time of that greatest mean")
         .def_readonly("fastest_rise", &StepStatistics::fastest_rise,
                       "m/s, greatest upward speed of a unit's mass centre after the barrier was touched")
+        .def_readonly("greatest_tilt", &StepStatistics::greatest_tilt,
+                      "rad, greatest tilt of a post that yields, from the vertical")
         .def_readonly("wheels_given_way", &StepStatistics::wheels_given_way,
                       "wheels that were loaded beyond what they carry, and have given way")
         .def_readonly("wheels_on_ground", &StepStatistics::wheels_on_ground,

@@ -1101,6 +1101,11 @@ class StepStatistics:
         s, time of that overlap
         """
     @property
+    def greatest_tilt(self) -> float:
+        """
+        rad, greatest tilt of a post that yields, from the vertical
+        """
+    @property
     def least_critical_step(self) -> float:
         """
         s, least sqrt(3)/omega of the trusses in contact

@@ -34,7 +34,7 @@ def test_cells_add_up_to_the_walls_load(oblique: Result, cells: LoadMap) -> None
     assert oblique.load_map(0.4).height[-1] <= 1.5
     impulse = own[1:].sum() * oblique.scene.settings.output_interval
     assert cells.impulse.sum() == pytest.approx(impulse, rel=1e-10)
-    assert cells.force.min() >= 0.0  # a wall does not pull
+    assert cells.force.min() >= -1e-12 * cells.force.max()  # a wall does not pull, to rounding
 
 
 def test_the_load_is_where_the_moments_of_the_elements_say(oblique: Result, cells: LoadMap) -> None:

@@ -51,6 +51,7 @@ def test_what_passes_below_the_lower_edge_draws_nothing_in(barrier: Barrier) -> 
     assert abs(left.barrier_force).max() > 1e4
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning")
 @pytest.mark.parametrize("height", [0.76, 0.82, 0.88, 0.94])
 def test_a_wall_below_a_trailer_leaves_its_sill(height: float) -> None:
     """The sill begins at 1.2 m. Once it was drawn in by 0.1 m while the wall was under the trailer."""

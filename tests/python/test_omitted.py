@@ -146,7 +146,7 @@ def test_counts_are_part_of_a_checkpoint() -> None:
     simulation.run()
     simulation.restore(kept)
     again = simulation.run()
-    assert len(COUNTS) == 21
+    assert len(COUNTS) == 22
     for name in COUNTS:
         assert getattr(again.statistics, name) == getattr(whole.statistics, name), name
     assert again.report() == whole.report()

@@ -347,11 +347,11 @@ def test_the_stronger_a_foundation_the_slower_the_truck_beyond_it() -> None:
     assert speeds[0] > 0.95 * units.mph(30)
 
 
-@pytest.mark.filterwarnings("ignore::birm3d.LeaningPostWarning")
+@pytest.mark.filterwarnings("ignore::birm3d.LeaningPostWarning", "ignore::birm3d.CoreContactWarning")
 def test_a_blow_of_the_core_on_a_leaning_post_gives_no_work_back() -> None:
     """Once such a blow, of several contacts, took 34 kJ from the work of yielding."""
-    posts = Barrier.bollards(count=3, diameter=0.273, height=1.0, spacing=1.4, wall_thickness=0.016)
-    result = Simulation(Vehicle.preset("cargo_truck"), posts, units.mph(50)).run()
+    posts = Barrier.bollards(count=3, diameter=0.273, height=1.5, spacing=1.4, wall_thickness=0.016)
+    result = Simulation(Vehicle.preset("cargo_truck"), posts, units.mph(40)).run()
     assert np.diff(result.energy["impacts"]).max() > 10e3
     # The elastic part of a held post's push may be given back within a step.
     assert np.diff(result.energy["yielding"]).min() > -50.0

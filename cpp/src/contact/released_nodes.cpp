@@ -171,6 +171,23 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     find_stopping_face(pass, block, (to - held).normalized(), node);
 }
 
+// A node that an indentation lets go extends to its free length, or to the first surface on its way.
+StoppedNode left_node(const ContactPass& pass, std::size_t i, double work, const ContactBlock& block,
+                      const DistantObstacles& distant) {
+    const TrussBlock& truss = pass.mesh.block[block.index];
+    const TrussBlockState& last = *block.start;
+    const Path path{block.index, i, {last.x[i], last.y[i], last.z[i]}, free_place(truss, last, i)};
+    StoppedNode node{
+        i,   path.end, last.residual[i], last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i],
+        work};
+    const auto stop = first_stop(pass, distant, path);
+    if (!stop || *stop == path.start) return node;
+    node.place = *stop;
+    node.deflection = truss.length[i] - (*stop - anchor_of(truss, i)).norm();
+    node.force = unloading_force(truss, last, i, node.deflection);
+    return node;
+}
+
 }  // namespace
 
 void snap_back(const ContactPass& pass, ContactBlock& block) {
@@ -216,7 +233,6 @@ bool may_release(const ContactPass& pass, const ContactBlock& block, bool ceased
 bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBlock& block,
                   DistantObstacles& distant) {
     block.stopped.clear();
-    const TrussBlockState& last = *block.start;
     alignas(64) BlockColumn leaves, released, work;
     HeldNodes held;
     find_leaving(pass, block, leaves);
@@ -224,11 +240,9 @@ bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBloc
         find_work_until_leaving(pass, block, work);
     find_released(pass, plane, block, held, released);
     for (std::size_t i = 0; i < block_size; ++i) {
-        if (leaves[i] > 0.0) {
-            block.stopped.push_back({i, free_place(pass.mesh.block[block.index], last, i), last.residual[i],
-                                     last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i],
-                                     work[i]});
-        } else if (released[i] > 0.0)
+        if (leaves[i] > 0.0)
+            block.stopped.push_back(left_node(pass, i, work[i], block, distant));
+        else if (released[i] > 0.0)
             find_stop(pass, plane, i, {held.x[i], held.y[i], held.z[i]}, block, distant);
     }
     return !block.stopped.empty() && !distant.were_met;

@@ -18,7 +18,7 @@ bool is_solid_to(const ContactPass& pass, std::size_t block, std::size_t node_in
 bool may_release(const ContactPass& pass, const ContactBlock& block, bool ceased);
 
 // Finds the released nodes that another surface stops. `plane` has released them, or the block's faces if it is null.
-// Nodes of a vanished indentation stop where they are. Returns whether there are any of either.
+// Returns whether there are any of either.
 bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBlock& block,
                   DistantObstacles& distant);
 

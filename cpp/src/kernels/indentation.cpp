@@ -24,8 +24,9 @@ constexpr double least_upright = 0.7, no_edge = 1e3;
 // Greatest share of the skin's force that pushes sideways on a post's flank, or along a post that leans. It is chosen by hand.
 // Sideways 0.1 to 0.4 would do: with less, a pole 0.35 m off the middle gives less sideways than finite elements show; with more,
 // posts at the end of a bumper throw it aside. Of leaning posts no measured force was found: a front that has folded round one is
-// taken to hold as well along it.
-constexpr double post_flank = 0.35;
+// taken to hold as well along it, but with a friction coefficient of `most_hold` at most. Without that, trucks stop at posts
+// that lie on the ground.
+constexpr double post_flank = 0.35, most_hold = 0.6;
 
 // Depth behind a panel's foremost node to which its width and lower edge are counted for a thin post (m). Small: a thin post
 // passes the rounded corner of a front without load. Large: a post beside a bumper draws it in before anything is met.
@@ -51,6 +52,14 @@ constexpr double beside_rails = 0.5, on_rail = 0.4;
 double open_flank_factor(double end, double edge_flank_factor) {
     const double outside = std::clamp((end - on_rail) / (beside_rails - on_rail), 0.0, 1.0);
     return post_flank + outside * (edge_flank_factor - post_flank);
+}
+
+// Push along a post that leans by the slope `tilt`, over that of a frictionless wedge.
+double climbing_share(double tilt) {
+    const double slope = std::abs(tilt), folded_round = 1.0 / std::hypot(1.0, slope / post_flank);
+    if (slope <= most_hold) return folded_round;
+    const double slides = (1.0 - most_hold / slope) / (1.0 + most_hold * slope);
+    return std::max(folded_round, slides);
 }
 
 // 1 if the edge opens to higher w, -1 if to lower. The free quadrant's bisector makes 45 degrees with w head-on.
@@ -145,7 +154,7 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
         half > 0.0 ? open_flank_factor((to_middle - radius) / half, edge_flank_factor) : post_flank;
     flank_low = flank_factor(-opens, open_flank);
     flank_high = flank_factor(opens, open_flank);
-    along_factor = 1.0 / std::hypot(1.0, (1.0 - std::abs(opens)) * tilt / post_flank);  // a wall is a wedge
+    along_factor = climbing_share((1.0 - std::abs(opens)) * tilt);  // a wall's edge is a wedge
     if (post.opens) set_faces(post, stands);
     const double slope_there = steepest * upright, cosine = 1.0 / std::sqrt(1.0 + slope_there * slope_there);
     steep_arc = slope_there * cosine * radius;

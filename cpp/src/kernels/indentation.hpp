@@ -12,10 +12,10 @@
 // the panel, so that an indentation stays where it was made. The factor k scales the sideways displacement by the flank. It is
 // 0.35 for a post, chosen by hand: the sheet's tension on one flank balances a part of that on the other. On the open side of
 // an edge that stands beside the rails it is edge_flank_factor. Before a face that is nearly parallel to the panel, that face
-// holds the skin. Along a post that leans by the slope t, a front slides as on a wedge while t is small. Where t is large, it has
-// folded round the post and climbs it with k of its force at most. Once D has reached a node, its depth u follows the velocity v
-// of the post:
-//   du = g (1 - ds/dd |w - w*|) (dv_e - t / sqrt(1 + (t/k)^2) dv_l) + g k sin(flank) dv_w
+// holds the skin. Along a post that leans by the slope t, a front slides as on a wedge while t is small. Then it folds round the
+// post, and climbs it with k of its force. On a post that leans by more than 49 degrees it slides up against a friction coefficient
+// of 0.6. Once D has reached a node, its depth u follows the velocity v of the post:
+//   du = g (1 - ds/dd |w - w*|) (dv_e - c dv_l) + g k sin(flank) dv_w,   c = max(t / sqrt(1 + (t/k)^2), (t - 0.6) / (1 + 0.6 t))
 // v_e and v_l are those of the post's deepest place at the node's height, v_l upwards; v_w is across the post, away from the node.
 // Above the post's top v_e is the top's, and v_l does not count. A post whose
 // axis is `off` beyond the panel's edge touches that edge with its flank. What it pushes there goes in by the square of the

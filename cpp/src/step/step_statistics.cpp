@@ -4,6 +4,8 @@
 #include <bit>
 #include <iterator>
 
+#include "scene/bodies.hpp"
+
 namespace birm3d {
 
 namespace {
@@ -72,6 +74,9 @@ void count_step(const Scene& scene, const Trial& accepted, State& state) {
         if (state.touched)
             statistics.fastest_rise = std::max(statistics.fastest_rise, unit.body.velocity.z());
     }
+    if (scene.tilts())
+        for (const BodyState& post : state.moving_elements)
+            statistics.greatest_tilt = std::max(statistics.greatest_tilt, tilt_of(post));
 }
 
 }  // namespace birm3d

@@ -1,7 +1,8 @@
-"""Warning of posts that lean and throw the vehicle up."""
+"""Warning of posts that lean: a vehicle that they throw up, or that they hold though they lie low."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
@@ -17,42 +18,67 @@ if TYPE_CHECKING:
 __all__ = ["LeaningPostWarning", "leaning_post_lines", "leaning_posts"]
 
 _FASTEST = 3.0  # m/s: more than a van that pitches at rigid posts has
+_STEEPEST = 45.0  # deg: beyond it a post is a ramp more than an obstacle
+_HELD = ("stopped", "redirected")
 
 
 class LeaningPostWarning(UserWarning):
-    """Posts that yield leaned, and threw the vehicle up at more than 3 m/s.
+    """Posts that yield threw the vehicle up at more than 3 m/s, or held it while they leaned by 45 degrees.
 
     A vehicle climbs a post that leans. A front that has folded round a post holds to it; how firmly is not
     known from any test. Whether the vehicle is stopped or goes over can be wrong either way.
     """
 
 
-def leaning_posts(scene: Scene, statistics: _core.StepStatistics) -> Iterator[Complaint]:
-    """Yield a complaint if posts that yield threw the vehicle up."""
+def leaning_posts(scene: Scene, statistics: _core.StepStatistics, event: _core.Event) -> Iterator[Complaint]:
+    """Yield a complaint if posts that yield threw the vehicle up, or held it though they lie low."""
     if _throws(scene, statistics):
         speed = statistics.fastest_rise
-        text = partial(_text, scene.vehicle.title, speed)
-        yield Complaint(LeaningPostWarning, "fastest_rise", speed, text)
+        yield Complaint(
+            LeaningPostWarning, "fastest_rise", speed, partial(_thrown, scene.vehicle.title, speed)
+        )
+    elif event.outcome in _HELD and _lie_low(scene, statistics):
+        tilt = math.degrees(statistics.greatest_tilt)
+        yield Complaint(LeaningPostWarning, "post_tilt", tilt, partial(_held, scene.vehicle.title, tilt))
 
 
 def leaning_post_lines(result: RunAnalysis) -> Iterator[str]:
     """Yield the warning for cautions and reports, if there is one."""
-    if _throws(result.scene, result.statistics):
+    scene, statistics = result.scene, result.statistics
+    if _throws(scene, statistics):
         yield (
-            f"Leaning posts throw the vehicle up at {result.statistics.fastest_rise:.1f} m/s. How firmly a "
-            "real front holds to a post that leans is not known. Do not rely on the outcome."
+            f"Leaning posts throw the vehicle up at {statistics.fastest_rise:.1f} m/s. How firmly a real "
+            "front holds to a post that leans is not known. Do not rely on the outcome."
+        )
+    elif result.outcome in _HELD and _lie_low(scene, statistics):
+        yield (
+            f"Posts lean by {math.degrees(statistics.greatest_tilt):.0f} degrees. Whether posts that lie so "
+            "low hold a real vehicle is not known. Do not rely on the outcome."
         )
 
 
+# Results of earlier versions do not have the numbers that these two look at.
 def _throws(scene: Scene, statistics: _core.StepStatistics | Stored) -> bool:
-    if scene.barrier is None or scene.barrier.yields() is None:
-        return False
-    rise = float(getattr(statistics, "fastest_rise", 0.0))  # results of earlier versions do not have it
-    return rise > _FASTEST
+    return _yields(scene) and float(getattr(statistics, "fastest_rise", 0.0)) > _FASTEST
 
 
-def _text(title: str, speed: float) -> str:
+def _lie_low(scene: Scene, statistics: _core.StepStatistics | Stored) -> bool:
+    return math.degrees(float(getattr(statistics, "greatest_tilt", 0.0))) > _STEEPEST
+
+
+def _yields(scene: Scene) -> bool:
+    return scene.barrier is not None and scene.barrier.yields() is not None
+
+
+def _thrown(title: str, speed: float) -> str:
     return (
         f"fastest_rise must be at most {_FASTEST:g} m/s to rely on the outcome, got {speed:.1f} m/s: leaning "
         f"posts throw the vehicle ({title}) up; how firmly a real front holds to them is not known"
+    )
+
+
+def _held(title: str, tilt: float) -> str:
+    return (
+        f"post_tilt must be at most {_STEEPEST:g} deg to rely on the outcome, got {tilt:.0f} deg: whether "
+        f"posts that lie so low hold a real vehicle ({title}) is not known"
     )

@@ -18,21 +18,20 @@ __all__ = ["LowBarrierWarning", "low_barrier", "low_barrier_lines"]
 
 _SAME = 1e-3  # m
 _CONTAINED = ("stopped", "redirected")
-_HEAD_ON = 45.0  # deg from the normal of the barrier, up to which a front is met before a side
+_FORWARDS = 45.0  # deg of yaw and roll, up to which the front or its corner comes first
 
 
 class LowBarrierWarning(UserWarning):
     """The barrier contains a vehicle, but is lower than most of the front that it is said to hold.
 
     More than a third of the front's resistance stands above the barrier's top, see
-    :func:`birm3d.vehicle.front_height.strong_height`. The vehicle came within 45 degrees of the barrier's
-    normal. The computed front is held as a whole by what its lower part meets. A real one is bent down, or
-    rides up and over.
+    :func:`birm3d.vehicle.front_height.strong_height`. The vehicle came forwards, at any angle. The computed
+    front is held by what its lower part meets. A real one is bent down, or rides up and over.
     """
 
 
 def low_barrier(scene: Scene, event: _core.Event) -> Iterator[Complaint]:
-    """Yield a complaint if such a barrier contains a vehicle that comes head-on."""
+    """Yield a complaint if such a barrier contains a vehicle that comes forwards."""
     if event.outcome not in _CONTAINED or event.manner == "rests_untouched":
         return
     found = _heights(scene)
@@ -74,9 +73,8 @@ def _heights(scene: Scene) -> tuple[float, float] | None:
 
 
 def _front_first(scene: Scene) -> bool:
-    """Whether the vehicle drives forwards and upright into the barrier, within 45 degrees of its normal."""
+    """Whether the vehicle comes forwards and upright."""
+    least = math.cos(math.radians(_FORWARDS))
     return (
-        abs(math.sin(math.radians(scene.impact_angle))) > math.sin(math.radians(_HEAD_ON))
-        and math.cos(math.radians(scene.impact_yaw)) > math.cos(math.radians(_HEAD_ON))
-        and math.cos(math.radians(scene.impact_roll)) > math.cos(math.radians(_HEAD_ON))
+        math.cos(math.radians(scene.impact_yaw)) > least and math.cos(math.radians(scene.impact_roll)) > least
     )

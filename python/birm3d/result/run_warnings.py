@@ -33,7 +33,7 @@ def complaints_of_run(
         open_balances(scene, balances),
         missed_barrier(scene, event),
         low_barrier(scene, event),
-        leaning_posts(scene, statistics),
+        leaning_posts(scene, statistics, event),
     )
 
 
@@ -61,7 +61,7 @@ def warn_of_run(
     LowBarrierWarning
         As a warning, if a barrier that contains a front is lower than most of it.
     LeaningPostWarning
-        As a warning, if posts that lean threw the vehicle up.
+        As a warning, if posts that lean threw the vehicle up, or hold it though they lie low.
     """
     for complaint in complaints_of_run(scene, statistics, balances, event):
         complaint.warn()

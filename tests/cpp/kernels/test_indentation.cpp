@@ -192,13 +192,15 @@ TEST("force and torque are what the ways of the nodes ask for by virtual work") 
 }
 
 TEST(
-    "along a post that leans the push is that of a wedge at first, and 0.35 of the push into the panel at "
-    "most") {
-    const Post post(0.2, 3.0);
-    for (const double lean : {-0.9, -0.3, -0.02, 0.02, 0.3, 0.9}) {
+    "along a post that leans the push is a wedge's, then 0.35 of that into the panel, then that against "
+    "friction") {
+    const Post post(0.2, 9.0);
+    for (const double lean : {-1.1, -0.8, -0.3, -0.02, 0.02, 0.3, 0.8, 1.1}) {
         const Placement stands = standing({2.0, 0.0, -1.0}, lean);
         const Followed found = indentation_by(post, stands, stands, 2.0, 1.0);
-        const double slope = -std::tan(lean), expected = slope / std::hypot(1.0, slope / 0.35);
+        const double slope = -std::tan(lean), folded = slope / std::hypot(1.0, slope / 0.35),
+                     slides = std::copysign(std::tan(std::abs(lean) - std::atan(0.6)), slope),
+                     expected = std::abs(lean) > 1.0 ? slides : folded;
         int held = 0;
         for (std::size_t i = 0; i < block_size; ++i) {
             if (found.follows[i] != 1.0) continue;

@@ -92,6 +92,7 @@ struct StepStatistics {
     double core_contact_time = 0.0;   // when (s)
     // Greatest upward speed of a unit's mass centre after the barrier was touched (m/s).
     double fastest_rise = 0.0;
+    double greatest_tilt = 0.0;          // of a post that yields, from the vertical (rad)
     std::uint64_t wheels_on_ground = 0;  // wheels that carried load, summed over the steps
     std::uint64_t wheels_given_way = 0;  // wheels that were loaded beyond what they carry
 };

@@ -145,7 +145,7 @@ def laboratory_cases() -> list[Case]:
 
     dense = partial(Vehicle.preset, "passenger_car", mesh_density=17.0)
     thrown = partial(Vehicle.preset, "paper_pickup", mesh_density=0.25)  # tyres without camber thrust
-    kerb = Barrier.rigid_wall(height=0.4, width=60.0)
+    kerb = Barrier.rigid_wall(height=0.5, width=60.0)
     return [
         Case("nodes", "one node", "head-on", lies(weightless, lambda: one(0.0)), True, 0.0),
         Case("nodes", "one node", "head-on, 0.8 m to the side", lies(weightless, lambda: one(0.8)), True),
