@@ -64,6 +64,14 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
     return now;
 }
 
+// Panels that the obstacle indents now, bit by bit.
+std::uint8_t panels_still_indented(const std::vector<IndentedPanels>& now, std::size_t obstacle) {
+    const auto same = std::find_if(now.begin(), now.end(), [obstacle](const IndentedPanels& indented) {
+        return indented.obstacle == obstacle;
+    });
+    return same != now.end() ? same->panels : std::uint8_t{0};
+}
+
 }  // namespace
 
 void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list,
@@ -78,8 +86,11 @@ void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list,
         if ((indented.panels | indented.passed) != 0) now.push_back(indented);
     }
     pass.indentations = list;
-    for (const IndentedPanels& before : pass.before.indented)
+    for (const IndentedPanels& before : pass.before.indented) {
         pass.indented_before |= before.panels;
+        pass.left_panels |=
+            static_cast<std::uint8_t>(before.panels & ~panels_still_indented(now, before.obstacle));
+    }
     if (pass.indented_before == 0) return;
     pass.greatest_following = 2.0 * pass.margin;
     for (const IndentedPanel& indented : list)

@@ -17,24 +17,10 @@ double without_lag(const NearObstacle& near, const Vec3& node, const Vec3& norma
     return lags_behind(before) && gap < 0.0 ? gap - before : gap;
 }
 
-namespace {
-
-// Has an obstacle ceased within the step to indent one of the block's panels?
-bool has_been_left(const ContactPass& pass, const ContactBlock& block) {
-    for (const IndentedPanels& before : pass.before.indented) {
-        unsigned left = before.panels & pass.mesh.panels_of[block.index];
-        for (const IndentedPanel& indented : pass.indentations)
-            if (pass.near[indented.near].index == before.obstacle) left &= ~(1U << indented.panel);
-        if (left != 0) return true;
-    }
-    return false;
-}
-
-}  // namespace
-
 void keep_lags(const ContactPass& pass, ContactBlock& block) {
     block.lags.reset();
-    if (!block.start->hangs && !has_been_left(pass, block)) return;
+    const bool was_left = (pass.mesh.panels_of[block.index] & pass.left_panels) != 0;
+    if (!block.start->hangs && !was_left) return;
     const TrussBlockState& nodes = *block.start;
     for (std::size_t i = 0; i < block_size; ++i) {
         if (block.faces.per_force[i] > 0.0) continue;  // an indentation moves it

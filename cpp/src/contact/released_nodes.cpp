@@ -85,6 +85,18 @@ std::optional<Vec3> first_stop(const ContactPass& pass, const DistantObstacles& 
     return path.at(outside);
 }
 
+// The same, for a node that is let go. Also asks obstacles that nothing else is near.
+std::optional<Vec3> find_first_stop(const ContactPass& pass, const Path& path, DistantObstacles& distant) {
+    find_distant(pass, distant);
+    const auto stop = first_stop(pass, distant, path);
+    distant.were_met =
+        distant.were_met ||
+        (stop && std::any_of(distant.list.begin(), distant.list.end(), [&](const NearObstacle& other) {
+             return gap_at(pass, other, *stop) < least_stride;
+         }));
+    return stop;
+}
+
 // The place to which the truss of a released node returns it.
 Vec3 free_place(const TrussBlock& truss, const TrussBlockState& nodes, std::size_t i) {
     const Vec3 anchor = anchor_of(truss, i);
@@ -154,13 +166,8 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     const Vec3 to(next.x[i], next.y[i], next.z[i]), was(last.x[i], last.y[i], last.z[i]);
     const Vec3 n = block.contact.normal(i);
     if ((to - held).norm() <= tolerance::touching_gap) return;
-    find_distant(pass, distant);
-    const auto stop = first_stop(pass, distant, {block.index, i, held, to});
+    const auto stop = find_first_stop(pass, {block.index, i, held, to}, distant);
     if (!stop) return;
-    distant.were_met = distant.were_met ||
-                       std::any_of(distant.list.begin(), distant.list.end(), [&](const NearObstacle& other) {
-                           return gap_at(pass, other, *stop) < least_stride;
-                       });
     const double deflection = truss.length[i] - (*stop - anchor).norm();
     const double at_release = truss.length[i] - (held - anchor).norm();
     block.stopped.push_back({i, *stop, deflection, next.residual[i], next.peak_deflection[i],
@@ -171,16 +178,17 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     find_stopping_face(pass, block, (to - held).normalized(), node);
 }
 
-// A node that an indentation lets go extends to its free length, or to the first surface on its way.
+// A node that an indentation lets go extends to its free length, or to the first surface on its way. One that is inside a surface
+// already extends through that.
 StoppedNode left_node(const ContactPass& pass, std::size_t i, double work, const ContactBlock& block,
-                      const DistantObstacles& distant) {
+                      DistantObstacles& distant) {
     const TrussBlock& truss = pass.mesh.block[block.index];
     const TrussBlockState& last = *block.start;
     const Path path{block.index, i, {last.x[i], last.y[i], last.z[i]}, free_place(truss, last, i)};
     StoppedNode node{
         i,   path.end, last.residual[i], last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i],
         work};
-    const auto stop = first_stop(pass, distant, path);
+    const auto stop = find_first_stop(pass, path, distant);
     if (!stop || *stop == path.start) return node;
     node.place = *stop;
     node.deflection = truss.length[i] - (*stop - anchor_of(truss, i)).norm();

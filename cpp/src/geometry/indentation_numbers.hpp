@@ -39,7 +39,7 @@ struct IndentationNumbers {
     double
         grip;  // fraction of the post's displacement that the skin follows, at the deepest point of the post in the panel
     double flank_low, flank_high;  // factors of the flanks on either side, by w
-    double along_factor;           // of the tilt, for what pushes along the panel
+    double along_factor;           // c over t of kernels/indentation.hpp
     EdgeFace face[2] = {};         // of an edge; of a post zero
     EdgeSide side_low, side_high;  // by w
     double steep_arc, rise_there;  // across and deep, of the place from where the flank is steepest

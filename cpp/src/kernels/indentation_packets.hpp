@@ -5,7 +5,7 @@
 //   e, w, l   into the panel, across the post and along it         w*, f       FollowedPlace::w, FollowedPlace::e
 //   s, ds/dd  Slope::slope, Slope::grows                           |w - w*|    FollowedPlace::beyond, with m (l - l*)+ added
 //   q         slope_of_face()                                      e - D       FollowedPlace::gap
-//   m         steeper
+//   m, t, c   steeper, tilt, along_factor times tilt
 //   g, g k    grip, and flank_low or flank_high times grip         -du         outward_displacement()
 #pragma once
 
@@ -139,8 +139,8 @@ BIRM3D_INLINE FollowingRate following_rate(const IndentationNumbers& indentation
             factor * flank / square_root(1.0 + flank * flank), indentation.grip * followed.on_face};
 }
 
-// Displacement along e by which a node follows a post more than a wedge, for each unit that the post moves along the panel: what
-// along_factor leaves out. Above the top it is zero.
+// How much further a node is carried along e than on a frictionless wedge, for each unit that the post moves up along l. Above
+// the top it is zero.
 BIRM3D_INLINE Packet rate_held_along(const IndentationNumbers& post, const NodePlace& place,
                                      const FollowingRate& rate) {
     const Packet zero = 0.0;

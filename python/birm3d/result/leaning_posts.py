@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 __all__ = ["LeaningPostWarning", "leaning_post_lines", "leaning_posts"]
 
 _FASTEST = 3.0  # m/s: more than a van that pitches at rigid posts has
-_STEEPEST = 45.0  # deg: beyond it a post is a ramp more than an obstacle
+_STEEPEST = 45.0  # deg: a little less than where a post becomes a ramp, see kernels/indentation.hpp
 _HELD = ("stopped", "redirected")
 
 
 class LeaningPostWarning(UserWarning):
-    """Posts that yield threw the vehicle up at more than 3 m/s, or held it while they leaned by 45 degrees.
+    """Posts that yield threw the vehicle up at more than 3 m/s, or held it while leaning beyond 45 degrees.
 
     A vehicle climbs a post that leans. A front that has folded round a post holds to it; how firmly is not
     known from any test. Whether the vehicle is stopped or goes over can be wrong either way.

@@ -25,8 +25,9 @@ class LowBarrierWarning(UserWarning):
     """The barrier contains a vehicle, but is lower than most of the front that it is said to hold.
 
     More than a third of the front's resistance stands above the barrier's top, see
-    :func:`birm3d.vehicle.front_height.strong_height`. The vehicle came forwards, at any angle. The computed
-    front is held by what its lower part meets. A real one is bent down, or rides up and over.
+    :func:`birm3d.vehicle.front_height.strong_height`. The vehicle came forwards and upright (yaw and roll
+    within 45 degrees), at any angle of impact. The computed front is held by what its lower part meets. A
+    real one is bent down, or rides up and over.
     """
 
 
