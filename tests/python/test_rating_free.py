@@ -115,7 +115,7 @@ def test_a_vehicle_that_passed_and_rolled_over_is_not_called_upright() -> None:
     assert (box.passed, box.grade) == (None, "not contained")
 
 
-@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning", "ignore::birm3d.LowBarrierWarning")
 def test_a_truck_on_its_side_is_not_upright() -> None:
     """It slides on along the wall at 88 degrees, less than the 90 of "rolled over"."""
     wall, truck = Barrier.rigid_wall(height=0.84), held_straight(Vehicle.preset("heavy_truck_29500"))

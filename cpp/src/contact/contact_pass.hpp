@@ -36,7 +36,7 @@ struct ContactPass {
     std::span<const Twist> relative_motion = {};  // parallel to near: the unit's, seen from the obstacle
     std::span<const IndentedPanel> indentations = {};
     std::uint8_t indented_before = 0;  // panels that posts had indented before the step, bit by bit
-    std::uint8_t left_panels = 0;      // the same, of panels that any of them has ceased to indent since
+    std::uint8_t left_panels = 0;      // the same, of panels that a post has ceased to indent since
     double greatest_following =
         0.0;  // bound of how far a node follows an indentation outwards within the step (m)
 

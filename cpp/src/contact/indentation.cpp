@@ -88,6 +88,7 @@ void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list,
     pass.indentations = list;
     for (const IndentedPanels& before : pass.before.indented) {
         pass.indented_before |= before.panels;
+        if (pass.scene.obstacles[before.obstacle].top_edge) continue;  // skin that hung over it lags already
         pass.left_panels |=
             static_cast<std::uint8_t>(before.panels & ~panels_still_indented(now, before.obstacle));
     }

@@ -178,8 +178,8 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     find_stopping_face(pass, block, (to - held).normalized(), node);
 }
 
-// A node that an indentation lets go extends to its free length, or to the first surface on its way. One that is inside a surface
-// already extends through that.
+// A node that an indentation lets go extends to its free length. A post or a wall's upright edge lets it go outside all surfaces:
+// the first one on its way stops it. Skin that hung over a top may be inside the wall, and extends through that.
 StoppedNode left_node(const ContactPass& pass, std::size_t i, double work, const ContactBlock& block,
                       DistantObstacles& distant) {
     const TrussBlock& truss = pass.mesh.block[block.index];
@@ -188,7 +188,7 @@ StoppedNode left_node(const ContactPass& pass, std::size_t i, double work, const
     StoppedNode node{
         i,   path.end, last.residual[i], last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i],
         work};
-    const auto stop = find_first_stop(pass, path, distant);
+    const auto stop = last.hangs ? std::nullopt : find_first_stop(pass, path, distant);
     if (!stop || *stop == path.start) return node;
     node.place = *stop;
     node.deflection = truss.length[i] - (*stop - anchor_of(truss, i)).norm();
