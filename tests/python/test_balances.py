@@ -189,7 +189,7 @@ def test_friction_of_body_and_tires_keeps_to_coulomb_at_the_end_of_every_step(
     assert isinstance(scene.barrier, RigidWall)
     assert meets_with_tires(result_of(scene_name))
     settings = dataclasses.replace(scene.settings, mu_tire_barrier=mu_tire_barrier)
-    # Treads of the file let go before the body does. These spring back further, and are the last at the wall.
+    # The file's treads leave the wall before the body. These spring back further, and leave it last.
     strong = scene.vehicle.with_zone("tire", envelope=((0.0, 0.0), (0.04, 0.25e6), (0.15, 0.3e6)))
     run = Simulation.from_scene(dataclasses.replace(scene, settings=settings, vehicle=strong))
     normal = np.array(scene.barrier.core.normal)

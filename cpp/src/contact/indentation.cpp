@@ -23,16 +23,21 @@ bool stood_before(const ContactPass& pass, std::size_t k, std::size_t p) {
     return then.beside() < 0.0 && gap_of_panel(then, p, pass.mesh, pass.before, 0.0, 0.0) > 0.0;
 }
 
+// What the obstacle indents in the list; nothing where that does not have it.
+IndentedPanels panels_by(const std::vector<IndentedPanels>& list, std::size_t obstacle) {
+    const auto known = std::find_if(list.begin(), list.end(), [obstacle](const IndentedPanels& indented) {
+        return indented.obstacle == obstacle;
+    });
+    return known != list.end() ? *known : IndentedPanels{obstacle};
+}
+
 // The panels that the post indents: it came into them from in front and has not released them.
 IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
                                     std::vector<IndentedPanel>& list) {
     const TrussMesh& mesh = pass.mesh;
     const NearObstacle& near = pass.near[k];
     const Obstacle& obstacle = pass.obstacle(k);
-    const std::vector<IndentedPanels>& all = pass.before.indented;
-    const auto known = std::find_if(all.begin(), all.end(),
-                                    [&](const IndentedPanels& by) { return by.obstacle == near.index; });
-    const IndentedPanels last = known != all.end() ? *known : IndentedPanels{near.index};
+    const IndentedPanels last = panels_by(pass.before.indented, near.index);
     const bool pushes = pushes_on(pass.before, near.index);
     const Twist motion = twist_in_body_axes(pass.unit.body, pass.before.body);
     IndentedPanels now{near.index};
@@ -64,14 +69,6 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
     return now;
 }
 
-// Panels that the obstacle indents now, bit by bit.
-std::uint8_t panels_still_indented(const std::vector<IndentedPanels>& now, std::size_t obstacle) {
-    const auto same = std::find_if(now.begin(), now.end(), [obstacle](const IndentedPanels& indented) {
-        return indented.obstacle == obstacle;
-    });
-    return same != now.end() ? same->panels : std::uint8_t{0};
-}
-
 }  // namespace
 
 void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list,
@@ -89,8 +86,8 @@ void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list,
     for (const IndentedPanels& before : pass.before.indented) {
         pass.indented_before |= before.panels;
         if (pass.scene.obstacles[before.obstacle].top_edge) continue;  // skin that hung over it lags already
-        pass.left_panels |=
-            static_cast<std::uint8_t>(before.panels & ~panels_still_indented(now, before.obstacle));
+        const int still = panels_by(now, before.obstacle).panels;
+        pass.left_panels |= static_cast<std::uint8_t>(before.panels & ~still);
     }
     if (pass.indented_before == 0) return;
     pass.greatest_following = 2.0 * pass.margin;

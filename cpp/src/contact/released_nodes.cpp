@@ -85,7 +85,7 @@ std::optional<Vec3> first_stop(const ContactPass& pass, const DistantObstacles& 
     return path.at(outside);
 }
 
-// The same, for a node that is let go. Also asks obstacles that nothing else is near.
+// The same. Distant obstacles, near which there is no other part of the vehicle, can stop the node, too.
 std::optional<Vec3> find_first_stop(const ContactPass& pass, const Path& path, DistantObstacles& distant) {
     find_distant(pass, distant);
     const auto stop = first_stop(pass, distant, path);
@@ -178,8 +178,9 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     find_stopping_face(pass, block, (to - held).normalized(), node);
 }
 
-// A node that an indentation lets go extends to its free length. A post or a wall's upright edge lets it go outside all surfaces:
-// the first one on its way stops it. Skin that hung over a top may be inside the wall, and extends through that.
+// The truss of a node that an indentation releases extends to its free length. A post or a wall's upright edge releases it
+// outside all surfaces, and the first one on its way stops it. Skin that hung over a top may be inside the wall: no surface
+// stops that.
 StoppedNode left_node(const ContactPass& pass, std::size_t i, double work, const ContactBlock& block,
                       DistantObstacles& distant) {
     const TrussBlock& truss = pass.mesh.block[block.index];

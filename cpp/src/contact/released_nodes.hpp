@@ -17,8 +17,8 @@ bool is_solid_to(const ContactPass& pass, std::size_t block, std::size_t node_in
 // Can nodes of the crushed block have been released? `ceased`: has any node stopped pushing?
 bool may_release(const ContactPass& pass, const ContactBlock& block, bool ceased);
 
-// Finds the released nodes that another surface stops, and those that an indentation has let go. `plane` has released the former,
-// or the block's faces if it is null. Returns whether there are any.
+// Finds two kinds of nodes: those that a surface has released and another one stops, and all that an indentation has released.
+// `plane` is that surface; if it is null, the block's faces are. Returns whether there are any.
 bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBlock& block,
                   DistantObstacles& distant);
 

@@ -21,11 +21,12 @@ constexpr double rounded = 0.05;
 // panel is left out.
 constexpr double least_upright = 0.7, no_edge = 1e3;
 
-// Greatest share of the skin's force that pushes sideways on a post's flank, or along a post that leans by up to 49 degrees. It is
-// chosen by hand. Sideways 0.1 to 0.4 would do: with less, a pole 0.35 m off the middle gives less sideways than finite elements show; with more,
-// posts at the end of a bumper throw it aside. Of leaning posts no measured force was found. A front that has folded round one is
-// taken to hold along it as firmly as across. It holds no more than a friction coefficient of `most_hold` would. With post_flank
-// alone, trucks stop at posts that lean by 70 degrees.
+// Greatest share of the skin's force that pushes sideways on a post's flank, or along a post that leans by up to 49 degrees. It
+// is chosen by hand. Sideways 0.1 to 0.4 would do. With less, a pole 0.35 m off the middle gives less sideways than finite
+// elements show. With more, posts at the end of a bumper throw it aside.
+// Of leaning posts no measured force was found. A front that has folded round one is taken to hold along it as firmly as across.
+// It holds no more than a friction coefficient of `most_hold` would. With post_flank alone, trucks stop at posts that lean by
+// 70 degrees.
 constexpr double post_flank = 0.35, most_hold = 0.6;
 
 // Depth behind a panel's foremost node to which its width and lower edge are counted for a thin post (m). Small: a thin post

@@ -1,26 +1,35 @@
 // A post indents a panel and drags the skin beside it along: the skin is drawn in with a slope s beside the post. So does the top
 // edge of a wall with the skin above it.
 //
-// The panel's direction e points into the vehicle. Seen along e, the post reaches to a depth f over the panel. The skin
-// beside a post that goes straight in comes to
-//   D(w, l) = max over places (w*, l*) of the post in front of the panel of  f(w*, l*) - s |w - w*| - m s (l - l*)+
-// with w across the post's axis and l along it, upwards. Above its top the skin falls off m = max(1, length / 0.2 m) times as
-// steeply: a deep indentation reaches 0.2 m up, the height of bumpers and rails. The slope grows with the depth d of the post,
-// s = sqrt(s0^2 + (d / length)^2): beams and panels carry a deep indentation about as far to either side as a shallow one.
+// The panel's direction e points into the vehicle; w is across the post's axis, l along it and upwards. Seen along e, the post
+// reaches to a depth f over the panel. A post that goes straight in draws the skin in to the depth D:
+//   D(w, l) = max of  f(w*, l*) - s |w - w*| - m s (l - l*)+
+// The maximum is over the places (w*, l*) of the post in front of the panel. Above the post's top the skin falls off more
+// steeply, by m = max(1, length / 0.2 m). So a deep indentation reaches 0.2 m up, the height of bumpers and rails. The
+// slope grows with the depth d of the post, s = sqrt(s0^2 + (d / length)^2): beams and panels carry a deep
+// indentation about as far to either side as a shallow one.
 //
 // The sheet beside a post is held by tension and shear. It goes in with the post, straight along e. It is not carried along
 // the panel, so that an indentation stays where it was made. The factor k scales the sideways displacement by the flank. It is
 // 0.35 for a post, chosen by hand: the sheet's tension on one flank balances a part of that on the other. On the open side of
 // an edge that stands beside the rails it is edge_flank_factor. Before a face that is nearly parallel to the panel, that face
-// holds the skin. Let a post lean by the slope t against the panel, as an upright one does where the front pitches. While t is
-// small a front slides as on a wedge. Then it folds round the post, and climbs it with 0.35 of its force. Beyond 49 degrees it slides up
-// against a friction coefficient of 0.6. The edge of a wall that is met head-on is a wedge, c = t. Once D has reached a node, its depth u follows the velocity v of the post:
-//   du = g (1 - ds/dd (|w - w*| + m (l - l*)+)) (dv_e - c dv_l) + g k sin(flank) dv_w
-//   c = max(t / sqrt(1 + (t / 0.35)^2), (t - 0.6) / (1 + 0.6 t)) for t > 0; for t < 0 the same with the other sign
-// v_e and v_l are those of the post's deepest place at the node's height, v_l upwards; v_w is across the post, away from the node.
-// Above the post's top v_e is the top's, and v_l does not count. A post whose
-// axis is `off` beyond the panel's edge touches that edge with its flank. What it pushes there goes in by the square of the
-// flank's cosine, g = 1 - (off / radius)^2. So a load ends where the whole post is beside the panel.
+// holds the skin.
+//
+// Let a post lean by the slope t against the panel, as an upright one does where the front pitches. The push along the post is c
+// times that into the panel:
+//   c = max(t / sqrt(1 + (t / 0.35)^2), (t - 0.6) / (1 + 0.6 t))
+// For t < 0 it is -c of -t. While t is small a front slides as on a wedge. Then it folds round the post, and climbs it with 0.35
+// of its force. Beyond 49 degrees it slides up against a friction coefficient of 0.6. The edge of a wall that is met head-on is a
+// wedge, c = t.
+//
+// Once D has reached a node, its depth u follows the velocity v of the post:
+//   du = g r (dv_e - c dv_l) + g k sin(flank) dv_w
+//   r  = 1 - ds/dd (|w - w*| + m (l - l*)+)
+// v_e and v_l are those of the post's deepest place at the node's height; v_w is across the post, away from the node. Above the
+// post's top v_e is the top's, and v_l does not count.
+//
+// A post whose axis is `off` beyond the panel's edge touches that edge with its flank. What it pushes there goes in by the square
+// of the flank's cosine, g = 1 - (off / radius)^2. So a load ends where the whole post is beside the panel.
 //
 // An edge that stands obliquely before a panel has a face on either side, which falls off from the panel with the slope q. Where
 // s exceeds q the skin lies on that face: q takes the place of s. Then u follows the turning of the face, too:

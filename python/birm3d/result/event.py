@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from .stored import Stored
 
 __all__ = [
+    "CONTAINED",
     "DECIDED",
     "OUTCOMES",
     "Metrics",
@@ -63,7 +64,9 @@ __all__ = [
     "outcome_words",
 ]
 
-OUTCOMES = ("stopped", "redirected", "passed", "overridden", "rolled_over", "undecided")
+CONTAINED = ("stopped", "redirected")
+"""Outcomes of a vehicle that the barrier contains."""
+OUTCOMES = (*CONTAINED, "passed", "overridden", "rolled_over", "undecided")
 """All words that :attr:`birm3d.Result.outcome` may be."""
 
 

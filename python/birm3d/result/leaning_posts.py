@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from ..base.complaints import Complaint
+from .event import CONTAINED
 
 if TYPE_CHECKING:
     from .. import _core
@@ -19,7 +20,6 @@ __all__ = ["LeaningPostWarning", "leaning_post_lines", "leaning_posts"]
 
 _FASTEST = 3.0  # m/s: more than a van that pitches at rigid posts has
 _STEEPEST = 45.0  # deg: a little less than where a post becomes a ramp, see kernels/indentation.hpp
-_HELD = ("stopped", "redirected")
 
 
 class LeaningPostWarning(UserWarning):
@@ -37,7 +37,7 @@ def leaning_posts(scene: Scene, statistics: _core.StepStatistics, event: _core.E
         yield Complaint(
             LeaningPostWarning, "fastest_rise", speed, partial(_thrown, scene.vehicle.title, speed)
         )
-    elif event.outcome in _HELD and _lie_low(scene, statistics):
+    elif event.outcome in CONTAINED and _lie_low(statistics):
         tilt = math.degrees(statistics.greatest_tilt)
         yield Complaint(LeaningPostWarning, "post_tilt", tilt, partial(_held, scene.vehicle.title, tilt))
 
@@ -50,7 +50,7 @@ def leaning_post_lines(result: RunAnalysis) -> Iterator[str]:
             f"Leaning posts throw the vehicle up at {statistics.fastest_rise:.1f} m/s. How firmly a real "
             "front holds to a post that leans is not known. Do not rely on the outcome."
         )
-    elif result.outcome in _HELD and _lie_low(scene, statistics):
+    elif result.outcome in CONTAINED and _lie_low(statistics):
         yield (
             f"Posts lean by {math.degrees(statistics.greatest_tilt):.0f} degrees. Whether posts that lie so "
             "low hold a real vehicle is not known. Do not rely on the outcome."
@@ -59,15 +59,12 @@ def leaning_post_lines(result: RunAnalysis) -> Iterator[str]:
 
 # Results of earlier versions do not have the numbers that these two look at.
 def _throws(scene: Scene, statistics: _core.StepStatistics | Stored) -> bool:
-    return _yields(scene) and float(getattr(statistics, "fastest_rise", 0.0)) > _FASTEST
+    yields = scene.barrier is not None and scene.barrier.yields() is not None
+    return yields and float(getattr(statistics, "fastest_rise", 0.0)) > _FASTEST
 
 
-def _lie_low(scene: Scene, statistics: _core.StepStatistics | Stored) -> bool:
+def _lie_low(statistics: _core.StepStatistics | Stored) -> bool:
     return math.degrees(float(getattr(statistics, "greatest_tilt", 0.0))) > _STEEPEST
-
-
-def _yields(scene: Scene) -> bool:
-    return scene.barrier is not None and scene.barrier.yields() is not None
 
 
 def _thrown(title: str, speed: float) -> str:

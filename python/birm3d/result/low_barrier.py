@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from ..base.complaints import Complaint
+from .event import CONTAINED
 
 if TYPE_CHECKING:
     from .. import _core
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 __all__ = ["LowBarrierWarning", "low_barrier", "low_barrier_lines"]
 
 _SAME = 1e-3  # m
-_CONTAINED = ("stopped", "redirected")
 _FORWARDS = 45.0  # deg of yaw and roll, up to which the front or its corner comes first
 
 
@@ -33,7 +33,7 @@ class LowBarrierWarning(UserWarning):
 
 def low_barrier(scene: Scene, event: _core.Event) -> Iterator[Complaint]:
     """Yield a complaint if such a barrier contains a vehicle that comes forwards."""
-    if event.outcome not in _CONTAINED or event.manner == "rests_untouched":
+    if event.outcome not in CONTAINED or event.manner == "rests_untouched":
         return
     found = _heights(scene)
     if found is not None:
@@ -44,7 +44,7 @@ def low_barrier(scene: Scene, event: _core.Event) -> Iterator[Complaint]:
 
 def low_barrier_lines(result: RunAnalysis) -> Iterator[str]:
     """Yield the warning for cautions and reports, if there is one."""
-    found = _heights(result.scene) if result.outcome in _CONTAINED else None
+    found = _heights(result.scene) if result.outcome in CONTAINED else None
     if found is None:
         return
     height, top = found

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from .. import pictures
 from ..base.arguments import checked
 from ..base.intervals import wilson
+from ..result.event import CONTAINED
 from ..result.metrics import METRIC_UNITS
 from ..simulation.simulation import Simulation
 from ..unit_check import given
@@ -217,7 +218,7 @@ def _limits(exceeds: Mapping[str, float] | None) -> Sequence[str]:
 def _stopped(study: Study) -> npt.NDArray[np.bool_]:
     outcome = study["outcome"]
     turned = np.isfinite(study.metrics["time_of_zero_velocity"])
-    contained = np.isin(outcome, ("stopped", "redirected")) | ((outcome == "rolled_over") & turned)
+    contained = np.isin(outcome, CONTAINED) | ((outcome == "rolled_over") & turned)
     return np.asarray(contained, bool)
 
 
