@@ -100,7 +100,7 @@ void register_vehicle(py::module_& m) {
                 std::vector<Wheel> discs_of_wheels = discs(wheels);
                 require_row_for_each(discs_of_wheels, breakaway, 2, "breakaway");
                 require_row_for_each(discs_of_wheels, suspension, 4, "suspension");
-                require_row_for_each(discs_of_wheels, tires, 3, "tires");
+                require_row_for_each(discs_of_wheels, tires, 4, "tires");
                 for (py::ssize_t i = 0; i < breakaway.shape(0); ++i) {
                     Wheel& wheel = discs_of_wheels[static_cast<std::size_t>(i)];
                     wheel.breakaway = breakaway.at(i, 0);
@@ -110,6 +110,7 @@ void register_vehicle(py::module_& m) {
                     wheel.steering_time = tires.at(i, 0);
                     wheel.tread_radius = tires.at(i, 1);
                     wheel.camber_ratio = tires.at(i, 2);
+                    wheel.rolling_resistance = tires.at(i, 3);
                 }
                 return Unit(body, trusses.moved(vector(origin, "origin")), std::move(discs_of_wheels),
                             mass_center_height, vector(offset, "offset"), std::move(boxes));
@@ -122,9 +123,10 @@ void register_vehicle(py::module_& m) {
             "up, m.\n"
             "suspension: shape (w, 4), stiffness, N/m (0: fixed to the body), damping, N s/m, compression at "
             "rest, m, travel from there to the bump stop, m.\n"
-            "tires: shape (w, 3), time in which a wheel with free steering follows its direction of travel, "
+            "tires: shape (w, 4), time in which a wheel with free steering follows its direction of travel, "
             "s "
-            "(inf: it does not steer), radius of the tread's cross-section, m, slip angle per tilt.\n"
+            "(inf: it does not steer), radius of the tread's cross-section, m, slip angle per tilt, rolling "
+            "resistance per load.\n"
             "origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not "
             "move.\n"
             "mass_center_height: m above the ground. offset: shape (3,), m, of the mass centre from the "

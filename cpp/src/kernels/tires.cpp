@@ -115,19 +115,26 @@ Vec3 direction_across(const Wheel& wheel, const Vec3& left, const Vec3& turned_l
 }
 
 // The friction of a wheel at this velocity as a fraction of mu N, with its sign reversed. Brakes have the part b of the friction
-// circle (Settings.braking), along the velocity. sqrt(1 - b^2) of it acts across the wheel, by the brush model.
-Vec3 mobilised_friction(const UnitOnTires& on, const Vec3& across, const Vec3& velocity) {
+// circle (Settings.braking), along the velocity. sqrt(1 - b^2) of it acts across the wheel, by the brush model, and along it as
+// rolling resistance.
+Vec3 mobilised_friction(const UnitOnTires& on, const Wheel& wheel, const Vec3& across, const Vec3& velocity) {
     const double mu = on.settings.mu_tire, brakes = on.settings.braking;
     const double steers = std::sqrt(1.0 - brakes * brakes);
     const Vec3 along(across.y(), -across.x(), 0.0);
-    const double tan_slip = velocity.dot(across) / std::max(std::abs(velocity.dot(along)), on.slowest());
+    const double rolls = velocity.dot(along);
+    const double tan_slip = velocity.dot(across) / std::max(std::abs(rolls), on.slowest());
     const double fraction = brush(on.settings.cornering_stiffness * tan_slip / (3.0 * mu));
     Vec3 mobilised = steers * fraction * across;
+    if (wheel.rolling_resistance > 0.0) {
+        const double slowed = wheel.rolling_resistance * on.speed_change;
+        mobilised +=
+            steers * wheel.rolling_resistance / mu * rolls / std::max(std::abs(rolls), slowed) * along;
+    }
     if (brakes > 0.0) {
         const Vec3 ground_velocity(velocity.x(), velocity.y(), 0.0);
         mobilised += brakes / std::max(ground_velocity.norm(), mu * on.speed_change) * ground_velocity;
-        mobilised /= std::max(1.0, mobilised.norm());
     }
+    if (wheel.rolling_resistance > 0.0 || brakes > 0.0) mobilised /= std::max(1.0, mobilised.norm());
     return mobilised;
 }
 
@@ -144,7 +151,7 @@ Wrench slip_friction(const UnitOnTires& on, double steering_angle, std::span<con
         const Wheel& wheel = on.unit.wheels[i];
         const Vec3 arm = point_on_ground(wheel, on.R, on.height);
         const Vec3 across = direction_across(wheel, left, turned_left, horizontal, on.R);
-        const Vec3 mobilised = mobilised_friction(on, across, on.velocity_at(arm));
+        const Vec3 mobilised = mobilised_friction(on, wheel, across, on.velocity_at(arm));
         const Vec3 impulse = -on.settings.mu_tire * normal_impulses[i] * mobilised;
         sum += {impulse, arm.cross(impulse)};
     }

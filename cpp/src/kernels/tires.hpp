@@ -5,7 +5,7 @@
 //   slip (default)  across the wheel's plane only, continuous in the slip angle: the brush model
 //                   F = mu N (1 - (1 - s)^3) for s = C tan(alpha) / (3 mu) < 1, mu N beyond,
 //                   with C the cornering stiffness per normal load (Fiala 1954; Pacejka, Tire and Vehicle
-//                   Dynamics, ch. 3). A rolling wheel resists nothing along its plane. Of the friction mu N a share b
+//                   Dynamics, ch. 3). Along its plane a rolling wheel has its rolling resistance only. Of the friction mu N a share b
 //                   may brake, against the velocity of the point of contact; sqrt(1 - b^2) of it steers (friction
 //                   circle), and at b = 1 the locked wheel slides. A tilted wheel rolls as if it were turned to the
 //                   side that it leans to, by `camber_ratio` of its tilt: camber thrust that never adds energy.

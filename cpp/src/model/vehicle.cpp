@@ -78,6 +78,7 @@ Unit::Unit(const RigidBody& body_, TrussMesh trusses_, std::vector<Wheel> wheels
         if (!(wheels[i].tread_radius >= 0.0 && wheels[i].tread_radius <= wheels[i].radius))
             refuse(name + " tread radius", ">= 0 m and at most the wheel's", wheels[i].tread_radius);
         require_at_least_zero("camber ratio", "", wheels[i].camber_ratio);
+        require_at_least_zero("rolling resistance", "", wheels[i].rolling_resistance);
         if (i >= most_breakaway_wheels && std::isfinite(wheels[i].breakaway))
             refuse(name + " breakaway", "inf beyond the first 64 wheels", wheels[i].breakaway);
         if (!wheels[i].center.allFinite()) refuse(name + " center", "finite", "a coordinate that is not");

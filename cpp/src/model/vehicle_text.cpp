@@ -144,6 +144,7 @@ std::vector<Wheel> wheels_of(Reader& in, std::string_view name) {
         const double breakaway = in.number(), travel = in.number();
         const double stiffness = in.number(), damping = in.number(), at_rest = in.number();
         const double bump = in.number(), steering_time = in.number(), tread_radius = in.number();
+        const double camber_ratio = in.number();
         wheels.push_back({center,
                           radius,
                           breakaway,
@@ -151,6 +152,7 @@ std::vector<Wheel> wheels_of(Reader& in, std::string_view name) {
                           {stiffness, damping, at_rest, bump},
                           steering_time,
                           tread_radius,
+                          camber_ratio,
                           in.number()});
     }
     return wheels;
@@ -235,8 +237,8 @@ Joint joint_of(Reader& in) {
 Vehicle vehicle_of_text(std::string_view text) {
     Reader in(text);
     in.expect("birm3d-vehicle");
-    if (const int version = in.whole(); version != 7)
-        in.wrong("version 7", "version " + std::to_string(version));
+    if (const int version = in.whole(); version != 8)
+        in.wrong("version 8", "version " + std::to_string(version));
     std::vector<Unit> units;
     for (std::size_t left = in.count("units"); left > 0; --left)
         units.push_back(unit_of(in));

@@ -152,6 +152,11 @@ bool is_decided(const Scene& scene, const State& state, Event& event) {
     return true;
 }
 
+bool rolls_on(const State& state, const Event& event) {
+    return !event.decided() && !event.touching &&
+           state.units.front().body.velocity.norm() > tolerance::coasting_speed;
+}
+
 void judge_at_longest(const Scene& scene, const State& state, Event& event) {
     revise(scene, state, true, event);
     if (event.decided() || !state.touched || runs_along_line(scene)) return;

@@ -19,6 +19,7 @@ void add_to(Hash& hash, const Wheel& wheel) {
     if (wheel.steers()) hash.add(wheel.steering_time);
     if (wheel.tread_radius > 0.0) hash.add(-wheel.tread_radius);  // no other number of a wheel is negative
     if (wheel.camber_ratio > 0.0) hash.add(-1e3 - wheel.camber_ratio);  // nor is any wheel that large
+    if (wheel.rolling_resistance > 0.0) hash.add(-2e3 - wheel.rolling_resistance);
     const Suspension& suspension = wheel.suspension;
     if (!suspension.springs()) return;
     for (const double number :

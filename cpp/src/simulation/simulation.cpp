@@ -128,6 +128,8 @@ double Simulation::remaining() const {
         end = *scene_.duration;
     else if (state_.decided)
         end = state_.decided_at + tolerance::tail_duration;
+    else if (state_.time > end - tolerance::shortest_step && scene_.barrier && rolls_on(state_, event_))
+        end = tolerance::longest_rolling;
     const double rest = end - state_.time;
     return rest > tolerance::shortest_step ? rest : 0.0;  // no step for a remainder of rounding
 }

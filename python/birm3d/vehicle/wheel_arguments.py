@@ -25,7 +25,7 @@ Floats = npt.NDArray[np.float64]
 
 _HOLDS = (np.inf, 0.0)
 _FIXED = (0.0, 0.0, 0.0, 0.0)
-_PLAIN_TIRE = (np.inf, 0.0, 0.0)
+_PLAIN_TIRE = (np.inf, 0.0, 0.0, 0.0)
 PLAIN = (*_HOLDS, *_FIXED, *_PLAIN_TIRE)
 """Numbers of a wheel of which a file says nothing, in the order breakaway(), suspension(), tires()."""
 
@@ -63,16 +63,16 @@ def suspension(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None
 
 
 def tires(vehicle: VehicleFields) -> Floats:
-    """Return how the tyre of each wheel steers, stands and leans (w, 3), by its zone.
+    """Return how the tyre of each wheel steers, stands, leans and rolls (w, 4), by its zone.
 
-    Steering time [s], radius of the tread's cross-section [m] and camber ratio. Wheels ahead of the mass
-    centre steer, where their zone has a time; the others have inf.
+    Steering time [s], radius of the tread's cross-section [m], camber ratio and rolling resistance per load.
+    Wheels ahead of the mass centre steer, where their zone has a time; the others have inf.
     """
     rows = _row_for_each_wheel(vehicle, _PLAIN_TIRE)
     for wheel, zone in _zones_of_wheels(vehicle):
         if zone.steering_time is not None and vehicle.wheels[wheel, 0] > 0.0:
             rows[wheel, 0] = zone.steering_time
-        rows[wheel, 1:] = zone.tread_radius or 0.0, zone.camber_ratio or 0.0
+        rows[wheel, 1:] = zone.tread_radius or 0.0, zone.camber_ratio or 0.0, zone.rolling_resistance or 0.0
     return rows
 
 

@@ -67,6 +67,7 @@ LAW_NUMBERS: Mapping[str, LawNumber] = {
     "steering_time": LawNumber("time", "> 0", "free steering follows in", of_wheel=True),
     "tread_radius": LawNumber("length", "> 0", "tread rounded by", of_wheel=True),
     "camber_ratio": LawNumber("number", "> 0", "camber ratio", of_wheel=True),
+    "rolling_resistance": LawNumber("number", "> 0", "rolling resistance", of_wheel=True),
 }
 """Numbers of a zone's law, in the order of files. Files, names of parameters and reports come from here."""
 
@@ -134,6 +135,8 @@ class Zone(Mapping[str, Any]):
     camber_ratio
         Of a zone of tyres: slip angle that has the same side force as a tilt, over that tilt [-]. ``None``: a
         tilted wheel has no camber thrust.
+    rolling_resistance
+        Of a zone of tyres: resistance of a rolling wheel on the road per normal load [-]. ``None``: 0.
     """
 
     k_initial: float | None = None
@@ -156,6 +159,7 @@ class Zone(Mapping[str, Any]):
     steering_time: float | None = None
     tread_radius: float | None = None
     camber_ratio: float | None = None
+    rolling_resistance: float | None = None
 
     def __post_init__(self) -> None:
         if self.envelope is None:
@@ -185,7 +189,13 @@ class Zone(Mapping[str, Any]):
             for name in names:
                 if given and name not in given:
                     raise ValueError(f"{name} must be given beside {given[0]}, got None")
-        for name in ("cornering_stiffness", "steering_time", "tread_radius", "camber_ratio"):
+        for name in (
+            "cornering_stiffness",
+            "steering_time",
+            "tread_radius",
+            "camber_ratio",
+            "rolling_resistance",
+        ):
             if getattr(self, name) is not None:
                 positive(name, getattr(self, name))
         if self.damping_ratio is not None and not 0.0 <= self.damping_ratio <= 1.0:

@@ -105,6 +105,25 @@ TEST(
     }
 }
 
+TEST("a rolling wheel resists along its plane by its share of the load, and does not roll back") {
+    Unit rolling = unit;
+    for (Wheel& wheel : rolling.wheels)
+        wheel.rolling_resistance = 0.015;
+    const Settings settings;
+    const BodyState upright;
+    const std::vector<double> normal(4, 1000.0);
+    const auto at = [&](const Vec3& velocity) {
+        const Twist motion{velocity, Vec3::Zero()};
+        return tire_friction(rolling, settings, upright, 0.0, {motion, motion}, normal).force;
+    };
+    for (const double speed : {-20.0, 20.0})
+        CHECK_CLOSE((at({speed, 0.0, 0.0}) - Vec3(-std::copysign(60.0, speed), 0.0, 0.0)).norm(), 0.0, 1e-9,
+                    "0.015 of 4,000 N s");
+    const double slow = 1e-3, impulse = -at({slow, 0.0, 0.0}).x();
+    CHECK(impulse > 0.0 && impulse * rolling.body.inverse_mass <= slow);
+    CHECK(at({20.0, 20.0, 0.0}).norm() <= settings.mu_tire * 4000.0 + 1e-9);
+}
+
 TEST("a wheel gives way beyond its load, and is pushed up by its travel") {
     Unit weak = unit;
     weak.wheels[1].breakaway = 5000.0;

@@ -12,7 +12,7 @@ using namespace birm3d;
 namespace {
 
 const std::string block =
-    "birm3d-vehicle 7\n"
+    "birm3d-vehicle 8\n"
     "units 1\n"
     "mass 0x1.f4p+9\n"
     "inertia 0x1p+9 0x0p+0 0x0p+0 0x0p+0 0x1p+9 0x0p+0 0x0p+0 0x0p+0 0x1p+9\n"
@@ -20,7 +20,7 @@ const std::string block =
     "offset 0x0p+0 0x0p+0 0x0p+0\n"
     "wheels 1\n"
     "0x1p+0 -0x1p-1 -0x1.999999999999ap-3 0x1.3333333333333p-2 0x1p+13 0x1p-1 0x1p+16 0x1p+11 0x1p-3 0x1p-4 "
-    "0x1p-5 0x1p-6 0x1p-7\n"
+    "0x1p-5 0x1p-6 0x1p-7 0x1p-8\n"
     "boxes 0\n"
     "mesh_origin 0x1p+0 0x0p+0 0x0p+0\n"
     "mesh_wheels 0\n"
@@ -67,7 +67,7 @@ TEST("numbers are read to the bit") {
     CHECK(suspension.stiffness == 65536.0 && suspension.damping == 2048.0);
     CHECK(suspension.at_rest == 0.125 && suspension.bump == 0.0625);
     CHECK(unit.wheels[0].steering_time == 0.03125 && unit.wheels[0].tread_radius == 0.015625);
-    CHECK(unit.wheels[0].camber_ratio == 0.0078125);
+    CHECK(unit.wheels[0].camber_ratio == 0.0078125 && unit.wheels[0].rolling_resistance == 0.00390625);
     CHECK(unit.trusses.friction_share[0][1] == 0.25);
     CHECK(unit.mass_center_height == 0.5);
     CHECK(unit.trusses.count == 2);
@@ -90,7 +90,7 @@ TEST("what is wrong is named by its line") {
     CHECK(names(refusal(with("0x1.f4p+9", "0x1.8q+9")), "line 3"));
     CHECK(names(refusal(with("0x1.f4p+9", "0x1.123456789abcdefp+9")), "line 3"));
     CHECK(names(refusal(with("0x1.f4p+9", "nan")), "line 3"));
-    CHECK(names(refusal(with("birm3d-vehicle 7", "birm3d-vehicle 1")), "version 7"));
+    CHECK(names(refusal(with("birm3d-vehicle 8", "birm3d-vehicle 1")), "version 8"));
     CHECK(names(refusal(with("birm3d-vehicle", "vehicle")), "line 1"));
     CHECK(names(refusal(with("trusses 2", "trusses 3")), "line 21"));
     CHECK(names(refusal(with("trusses 2", "trusses -1")), ">= 0"));

@@ -163,8 +163,9 @@ inline constexpr double coasting_speed = 0.25;
 // The instant at which the outcome of a run is decided is found to within this (s).
 inline constexpr double decision_resolution = 1e-6;
 
-// A run without a duration ends here at the latest (s).
-inline constexpr double longest_event = 5.0;
+// A run without a duration ends here at the latest (s). Where a vehicle is undecided by then and rolls on free of the barrier,
+// it is followed until it has passed, coasts or touches the barrier again, and until the second time at the latest.
+inline constexpr double longest_event = 5.0, longest_rolling = 30.0;
 
 // A vehicle may start this far inside a surface (m): rounding of the initial placement only.
 inline constexpr double initial_overlap = 1e-9;

@@ -5,15 +5,15 @@
 // writes it (0x1.8p+3), inf, or a whole number: no rounding and no locale come between. Lengths are in m; n rows
 // follow each count.
 //
-//   birm3d-vehicle 7
+//   birm3d-vehicle 8
 //   units u
 //     mass m                      kg
 //     inertia                     nine numbers, about the mass centre, body axes (kg m^2)
 //     mass_center_height h        above the ground at rest
 //     offset x y z                of the mass centre from the vehicle's reference point; z is 0
 //     wheels n                    rows: centre (3), radius, breakaway load (N), travel, stiffness (N/m), damping (N s/m),
-//                                 compression at rest, bump travel, steering time (s), tread radius, camber ratio; body
-//                                 axes
+//                                 compression at rest, bump travel, steering time (s), tread radius, camber ratio, rolling
+//                                 resistance per load; body axes
 //     boxes n                     rows: centre (3), half edges (3) of the rigid body's boxes; body axes
 //     mesh_origin x y z           of the body axes, in the axes of the mesh
 //     mesh_wheels n               rows as above, in the axes of the mesh

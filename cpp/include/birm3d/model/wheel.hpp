@@ -32,6 +32,7 @@ struct Wheel {
     double tread_radius = 0.0;  // of the tread's cross-section, at most `radius` (m)
     // Slip angle that has the same side force, per tilt: a tilted wheel rolls on a curve towards the side it leans to.
     double camber_ratio = 0.0;
+    double rolling_resistance = 0.0;  // of a wheel that rolls, per load
 
     bool steers() const { return steering_time < infinity; }
 };

@@ -86,6 +86,9 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
 // Is the outcome known, with nothing still to be seen of roll, pitch and what slides? Then the event has its verdict.
 bool is_decided(const Scene& scene, const State& state, Event& event);
 
+// Does an undecided vehicle move free of the barrier? It may still roll past it or come to rest.
+bool rolls_on(const State& state, const Event& event);
+
 // Gives an undecided run its verdict, if it ends at tolerance::longest_event or later. A vehicle that still slides along the
 // barrier is redirected, one that is slow is stopped.
 void judge_at_longest(const Scene& scene, const State& state, Event& event);
