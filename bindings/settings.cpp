@@ -5,11 +5,15 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "birm3d/base/tolerances.hpp"
+#include "birm3d/model/barrier.hpp"
+#include "birm3d/model/vehicle.hpp"
 #include "register.hpp"
 
 namespace birm3d::bindings {
@@ -47,9 +51,10 @@ constexpr std::array rows = {
     SettingRow{"tire_model", &set<&Settings::tire_model>},
 };
 
-// Settings by name; what is not given has its default.
-Settings settings_from(const py::typing::Dict<py::str, py::object>& given) {
-    Settings settings;
+using Given = py::typing::Dict<py::str, py::object>;
+
+// Settings by name; what is not given is as in `settings`.
+Settings settings_from(const Given& given, Settings settings) {
     for (const auto& [key, value] : given) {
         const auto name = key.cast<std::string>();
         const auto row =
@@ -72,7 +77,18 @@ void register_settings(py::module_& m) {
         .value("skid", TireModel::skid, "full unless the mass centre moves along r: the paper's rule");
 
     py::class_<Settings>(m, "Settings", "How a scene is computed (SI). Immutable.")
-        .def(py::init(&settings_from), py::arg("values"));
+        .def(py::init([](const Given& values) { return settings_from(values, {}); }), py::arg("values"),
+             "What is not among the values has the default of a car.")
+        .def(py::init([](const Given& values, const Vehicle& vehicle,
+                         const std::vector<std::shared_ptr<Barrier>>& barriers) {
+                 const Barrier* barrier = barriers.empty() ? nullptr : barriers.front().get();
+                 return settings_from(values, usual_settings(vehicle, barrier));
+             }),
+             py::arg("values"), py::arg("vehicle"), py::arg("barriers"),
+             "What is not among the values is the vehicle's. barriers: one or none, as of a Scene.")
+        .def_readonly("mu_tire_barrier", &Settings::mu_tire_barrier, "friction coefficient")
+        .def_readonly("cornering_stiffness", &Settings::cornering_stiffness, "1/rad")
+        .def_readonly("edge_flank_factor", &Settings::edge_flank_factor, "pure number");
     // s: so long a run goes on once its outcome is known.
     m.attr("tail_duration") = tolerance::tail_duration;
     // m/s: a slower vehicle counts as at rest.

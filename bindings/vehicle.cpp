@@ -167,10 +167,16 @@ void register_vehicle(py::module_& m) {
              "slide (n, 2): force (N) that a sliding joint holds against slip (m), rows of (slip, force).");
     py::class_<Vehicle, std::shared_ptr<Vehicle>>(m, "Vehicle",
                                                   "One or more units and the joints between them. Immutable.")
-        .def(py::init([](std::vector<Unit> units, std::vector<Joint> joints) {
-                 return std::make_shared<Vehicle>(joined(std::move(units), std::move(joints)));
+        .def(py::init([](std::vector<Unit> units, std::vector<Joint> joints, double cornering_stiffness,
+                         double edge_flank_factor) {
+                 auto vehicle = std::make_shared<Vehicle>(joined(std::move(units), std::move(joints)));
+                 vehicle->cornering_stiffness = cornering_stiffness;
+                 vehicle->edge_flank_factor = edge_flank_factor;
+                 return vehicle;
              }),
-             py::arg("units"), py::arg("joints"))
+             py::arg("units"), py::arg("joints"), py::kw_only(), py::arg("cornering_stiffness"),
+             py::arg("edge_flank_factor"),
+             "cornering_stiffness (1/rad), edge_flank_factor: of runs whose settings ask for none.")
         .def_property_readonly(
             "stands_on_wheels",
             [](const Vehicle& vehicle) {

@@ -2,7 +2,6 @@
 //
 //   python -c "import birm3d; birm3d.Vehicle.preset('passenger_car').export_core('car.txt')"
 //   birm3d_from_file car.txt 15 60       speed (m/s), angle between path and wall (deg)
-//   birm3d_from_file truck.txt 15 60 6   and the cornering stiffness of its tyres (1/rad)
 //
 // The wall is rigid, without end, with a friction coefficient of 0.2. The same scene in Python has the same state hash.
 #include <algorithm>
@@ -32,8 +31,8 @@ double number(const char* text) {
 
 int main(int argc, char** argv) try {
     using namespace birm3d;
-    if (argc != 4 && argc != 5) {
-        std::fprintf(stderr, "usage: %s VEHICLE SPEED ANGLE [CORNERING_STIFFNESS]\n", argv[0]);
+    if (argc != 4) {
+        std::fprintf(stderr, "usage: %s VEHICLE SPEED ANGLE\n", argv[0]);
         return 2;
     }
     std::ifstream file(argv[1]);
@@ -47,8 +46,7 @@ int main(int argc, char** argv) try {
 
     const auto vehicle = std::make_shared<const Vehicle>(vehicle_of_text(text));
     const auto wall = std::make_shared<const Barrier>(Barrier::wall(0.2, Vec3::Zero(), 0.0));
-    Settings settings;
-    if (argc == 5) settings.cornering_stiffness = number(argv[4]);
+    const Settings settings = usual_settings(*vehicle, wall.get());
     Simulation simulation(Scene(vehicle, wall, Approach{speed, angle, 0.0, 0.0}, settings, {}));
     simulation.run([] {});
 

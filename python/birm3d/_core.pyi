@@ -915,8 +915,31 @@ class Settings:
     """
     How a scene is computed (SI). Immutable.
     """
+    @typing.overload
     def __init__(self, values: dict[str, typing.Any]) -> None:
-        ...
+        """
+        What is not among the values has the default of a car.
+        """
+    @typing.overload
+    def __init__(self, values: dict[str, typing.Any], vehicle: Vehicle, barrier: Barrier) -> None:
+        """
+        What is not among the values is the vehicle's. barrier: None where there is none.
+        """
+    @property
+    def cornering_stiffness(self) -> float:
+        """
+        1/rad
+        """
+    @property
+    def edge_flank_factor(self) -> float:
+        """
+        pure number
+        """
+    @property
+    def mu_tire_barrier(self) -> float:
+        """
+        friction coefficient
+        """
 class Simulation:
     """
     A run of one scene (SI, rad). One user at a time: any other gets a BusyError. `with simulation:` keeps others out
@@ -1276,7 +1299,7 @@ class Unit:
         mass: kg. inertia: shape (3, 3), kg m^2. wheels: shape (w, 4), centre and radius, m.
         breakaway: shape (w, 2), load at which each wheel gives way, N, and how far it is then pushed up, m.
         suspension: shape (w, 4), stiffness, N/m (0: fixed to the body), damping, N s/m, compression at rest, m, travel from there to the bump stop, m.
-        tires: shape (w, 3), time in which a wheel with free steering follows its direction of travel, s (inf: it does not steer), radius of the tread's cross-section, m, slip angle per tilt.
+        tires: shape (w, 4), time in which a wheel with free steering follows its direction of travel, s (inf: it does not steer), radius of the tread's cross-section, m, slip angle per tilt, rolling resistance per load.
         origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not move.
         mass_center_height: m above the ground. offset: shape (3,), m, of the mass centre from the vehicle's reference point along the ground.
         core: shape (k, 6), middles and half edges of the boxes that the rigid body fills, body axes, m.
@@ -1363,8 +1386,10 @@ class Vehicle:
     """
     One or more units and the joints between them. Immutable.
     """
-    def __init__(self, units: collections.abc.Sequence[Unit], joints: collections.abc.Sequence[Joint]) -> None:
-        ...
+    def __init__(self, units: collections.abc.Sequence[Unit], joints: collections.abc.Sequence[Joint], *, cornering_stiffness: typing.SupportsFloat | typing.SupportsIndex, edge_flank_factor: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        cornering_stiffness (1/rad), edge_flank_factor: of runs whose settings ask for none.
+        """
     def springback(self, unit: typing.SupportsInt | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) m: what each node of a unit comes back by without force

@@ -563,7 +563,7 @@ def test_small_shares_have_no_powers_of_ten() -> None:
 
 def test_bands_of_criteria_have_the_digits_of_their_medians() -> None:
     masses = [Criterion("mass", mass, "kg", "", True) for mass in (6703.33, 6814.21, 6911.89)]
-    ratings = [Rating("", "", 0.0, True, (mass,), "", "") for mass in masses]
+    ratings = [Rating("", "", 0.0, True, (mass,), (), "") for mass in masses]
     ((_, median, band, *_),) = band_rows(ratings)
     assert median == "6,814.2 kg"
     assert re.fullmatch(r"6,7\d\d\.\d to 6,\d{3}\.\d kg", band)

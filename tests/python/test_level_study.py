@@ -50,7 +50,7 @@ def test_a_run_without_a_rating_counts_in_the_level() -> None:
     def part(test: str, passed: bool) -> Rating:
         rows = (Criterion("upright", "", "", "", passed),)
         word = "pass" if passed else "fail"
-        return Rating("EN 1317", f"EN 1317 {test}: {word}", 0.5, True, rows, "c", "car")
+        return Rating("EN 1317", word, 0.5, True, rows, ("c",), "car", test)
 
     open_run = "result must have run until the outcome is decided (duration=None), got one that ends at 5 s"
     small = RatingStudy({0: part("TB11", True), 1: part("TB11", False)}, {})

@@ -70,7 +70,8 @@ def test_settings_reach_the_core_by_name(monkeypatch: pytest.MonkeyPatch) -> Non
     names = [field.name for field in dataclasses.fields(Settings)]
     given: dict[str, Any] = {}
     monkeypatch.setattr(_core, "Settings", given.update)
-    Settings(mu_body=0.3)
+    of_vehicle = {"mu_tire_barrier": 0.5, "cornering_stiffness": 8.0, "edge_flank_factor": 0.7}
+    Settings(mu_body=0.3, time_step=1e-4, **of_vehicle)
     assert sorted(given) == sorted(names)
     assert (given["mu_body"], given["mu_tire"], given["tolerance"]) == (0.3, 0.8, 1e-3)
     monkeypatch.undo()

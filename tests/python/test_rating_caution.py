@@ -6,7 +6,7 @@ import birm3d
 import pytest
 from birm3d import Barrier, Result, Simulation, Vehicle, units
 from birm3d.assessment.criteria import Criterion
-from birm3d.assessment.rating_caution import level_caution, model_caution, risk_lines
+from birm3d.assessment.rating_caution import fails_clearly, level_cautions, model_cautions, risk_lines
 
 
 @pytest.mark.parametrize("standard", ["IWA 14-1", "ISO 22343-1", "ASTM F2656", "PAS 68", "SD-STD-02.01"])
@@ -33,15 +33,17 @@ def test_what_the_model_says_of_a_barrier() -> None:
     rigid = "Barriers that are modelled as rigid do not give way"
     free = Barrier.jersey(length=30.0, segments=5, free_standing=True)
     for barrier, told in ((Barrier.bollards(), True), (None, True), (tubes, False), (free, False)):
-        text = model_caution(barrier)
+        text = " ".join(model_cautions(barrier))
         assert (rigid in text) is told
         assert text.startswith("Indicative: computed, not tested.")
-    assert "Posts yield" in model_caution(tubes)
+    assert any("Posts yield" in one for one in model_cautions(tubes))
 
 
 def test_the_caution_of_a_level_says_which_tests_it_is_about() -> None:
-    text = level_caution({"a": "All. Of two. Of a.", "b": "All. Of two.", "c": "All. Of c 1.2 m. Long."})
-    assert text == "All. Tests a, b: Of two. Test a: Of a. Test c: Of c 1.2 m. Long."
+    found = level_cautions(
+        {"a": ("All.", "Of two.", "Of a."), "b": ("All.", "Of two."), "c": ("All.", "Of c 1.2 m.", "Long.")}
+    )
+    assert found == ("All.", "Tests a, b: Of two.", "Test a: Of a.", "Test c: Of c 1.2 m. Long.")
 
 
 @pytest.fixture(scope="module")
@@ -101,6 +103,8 @@ def test_roll_of_light_vehicles_at_sloped_faces_is_called_an_estimate(car: Vehic
         ([Criterion("THIV", 35.2, "km/h", "33 km/h", False)], ["Within 15 % of the limit", "THIV"]),
         ([Criterion("THIV", 30.0, "km/h", "33 km/h", True)], ["Within 15 % of the limit", "THIV"]),
         ([Criterion("THIV", 24.0, "km/h", "33 km/h", True)], []),
+        ([Criterion("THIV", 32.0, "km/h", "", None)], []),  # MASH reports it
+        ([Criterion("ASI", 1.899, "", "A 1, B 1.4, C 1.9", True, "class C")], ["Within 15 %", "ASI"]),
         ([Criterion("H: OIV, lateral", 13.9, "m/s", "", False)], ["H: OIV, lateral"]),
         ([Criterion("I: ridedown, lateral", 26.0, "g", "", False)], ["171 %", "I: ridedown, lateral"]),
         ([Criterion("I: ridedown, lateral", 12.0, "g", "", True)], []),
@@ -111,3 +115,6 @@ def test_verdicts_within_the_error_of_occupant_risk_say_so(rows: list[Criterion]
     text = " ".join(risk_lines(rows))
     assert bool(text) is bool(said)
     assert all(part in text for part in said)
+    failed = [row for row in rows if row.passed is False]
+    assert not fails_clearly(failed)  # all that fail here are within the error
+    assert fails_clearly([*rows, Criterion("upright", "rolled over", "", "", False)])

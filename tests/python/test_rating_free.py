@@ -86,7 +86,7 @@ def test_a_level_that_passes_has_its_classes() -> None:
             Criterion("ASI", asi, "", "", True, f"class {grade}"),
             Criterion("working width", width, "m", "", None, wide),
         )
-        return Rating("EN 1317", f"EN 1317 {test}: pass; severity {grade}", 0.5, True, rows, "c", "car")
+        return Rating("EN 1317", f"pass; severity {grade}", 0.5, True, rows, ("c",), "car", test)
 
     level = level_rating(
         EN_1317, "N2", [part("TB11", 1.3, "B", 0.7, "W2"), part("TB32", 0.9, "A", 1.2, "W4")]

@@ -115,9 +115,8 @@ std::vector<Box> boxes_of_barrier(const Scene& scene, const State& state, const 
 }
 
 // May a vehicle that moves away from all elements still come past an end of the barrier? It may where it skids beside an end, or
-// rolls on beside it towards the protected side, and is not past the barrier yet.
+// rolls on beside it towards the protected side, and is not past the barrier or clear of it yet.
 bool may_pass_an_end(const Scene& scene, const State& state) {
-    constexpr double far_from_ends = 2.0;  // reaches of the vehicle
     if (!scene.settings.ground || scene.settings.gravity == 0.0 || scene.settings.mu_tire == 0.0)
         return false;
     const bool rolls_in = state.units.front().body.velocity.dot(scene.towards()) > tolerance::coasting_speed;
@@ -126,13 +125,14 @@ bool may_pass_an_end(const Scene& scene, const State& state) {
     axes << scene.towards(), Vec3::UnitZ().cross(scene.towards()), Vec3::UnitZ();
     const Vec3 place = axes.transpose() * state.units.front().body.position,
                velocity = axes.transpose() * state.units.front().body.velocity;
-    const double margin = far_from_ends * scene.vehicle->units.front().trusses.reach;
-    bool past = velocity.x() > 0.0;
+    const double margin = tolerance::clear_of_barrier * scene.vehicle->units.front().trusses.reach;
+    bool past = velocity.x() > 0.0, clear = true;
     for (const Box& box : boxes_of_barrier(scene, state, axes)) {
         if (std::abs(place.y() - box.center.y()) < box.half.y() - margin) return false;
         past = past && place.x() > box.center.x();
+        clear = clear && from_box(box, place).head<2>().norm() > margin;
     }
-    return !past;
+    return !past && !clear;
 }
 
 // Moving elements that friction can stop have stopped.

@@ -4,6 +4,8 @@
 
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
+#include "birm3d/model/barrier.hpp"
+#include "birm3d/model/vehicle.hpp"
 
 namespace birm3d {
 
@@ -22,6 +24,14 @@ void require_valid(const Settings& s) {
     require_positive("cornering_stiffness", s.cornering_stiffness);
     require_within("restitution", s.restitution, 0.0, 1.0);
     require_not_negative("edge_flank_factor", s.edge_flank_factor);
+}
+
+Settings usual_settings(const Vehicle& vehicle, const Barrier* barrier) {
+    Settings settings;
+    if (barrier != nullptr && barrier->friction == 0.0) settings.mu_tire_barrier = 0.0;
+    settings.cornering_stiffness = vehicle.cornering_stiffness;
+    settings.edge_flank_factor = vehicle.edge_flank_factor;
+    return settings;
 }
 
 }  // namespace birm3d

@@ -239,6 +239,10 @@ Vehicle vehicle_of_text(std::string_view text) {
     in.expect("birm3d-vehicle");
     if (const int version = in.whole(); version != 8)
         in.wrong("version 8", "version " + std::to_string(version));
+    in.expect("cornering_stiffness");
+    const double cornering_stiffness = in.number();
+    in.expect("edge_flank_factor");
+    const double edge_flank_factor = in.number();
     std::vector<Unit> units;
     for (std::size_t left = in.count("units"); left > 0; --left)
         units.push_back(unit_of(in));
@@ -246,7 +250,11 @@ Vehicle vehicle_of_text(std::string_view text) {
     for (std::size_t left = in.count("joints"); left > 0; --left)
         joints.push_back(joint_of(in));
     in.expect_end();
-    return joined(std::move(units), std::move(joints));
+    Vehicle vehicle = joined(std::move(units), std::move(joints));
+    vehicle.cornering_stiffness = cornering_stiffness;
+    vehicle.edge_flank_factor = edge_flank_factor;
+    require_valid(usual_settings(vehicle, nullptr));
+    return vehicle;
 }
 
 }  // namespace birm3d

@@ -32,7 +32,9 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
     const double past = distance_past_line(scene, state, event);
     const double speed = std::hypot(body.velocity.x(), body.velocity.y());
     const double into = body.velocity.dot(event.towards);
-    if (past > 0.0 || into > parallel * speed) {
+    // What the barrier has turned back does not pass it, though its tyres may turn its path once more.
+    const bool turned_back = state.touched && event.released_velocity.dot(event.towards) < 0.0;
+    if (past > 0.0 || (into > parallel * speed && !turned_back)) {
         if (event.over_top) {
             event.verdict = Verdict::overridden, event.manner = Manner::over;
             return;
@@ -55,18 +57,20 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
         return;
     }
     event.verdict = Verdict::stopped;
-    event.manner = Manner::rebounds;
+    event.manner = state.touched ? Manner::rebounds : Manner::rests_untouched;
 }
 
-// A vehicle that was stopped or redirected has passed if it comes past an end of the barrier afterwards, on a curved path.
-// `at_end`: is the run over? Then a vehicle that moves towards the line has passed, too.
+// A vehicle that was stopped or redirected has passed if it comes past an end of the barrier afterwards, on a curved path, before
+// it is clear of the barrier. `at_end`: is the run over? Then a vehicle that moves towards the line has passed, too.
 void revise(const Scene& scene, const State& state, bool at_end, Event& event) {
-    if (!event.left || event.touching || event.rolled_over() || runs_along_line(scene)) return;
+    if (!event.left || event.clear || event.touching || event.rolled_over() || runs_along_line(scene)) return;
     if (event.verdict != Verdict::stopped && event.verdict != Verdict::redirected) return;
+    event.clear = is_clear_of_barrier(scene, state, event);
     const Vec3& velocity = state.units.front().body.velocity;
     const bool moves = velocity.norm() > tolerance::coasting_speed;
-    const bool nears = at_end && velocity.dot(event.towards) >
-                                     std::max(tolerance::coasting_speed, parallel * velocity.norm());
+    const bool nears =
+        at_end && !event.clear &&
+        velocity.dot(event.towards) > std::max(tolerance::coasting_speed, parallel * velocity.norm());
     const bool past =
         distance_past_line(scene, state, event) > 0.0 && crossed_beside_elements(scene, state, event);
     if (!nears && !past) return;

@@ -79,14 +79,17 @@ double line_position(const Scene& scene, const State& state, const Vec3& towards
 double distance_past_line(const Scene& scene, const State& state, const Event& event) {
     const Vec3& center = state.units.front().body.position;
     if (!scene.slides() || runs_along_line(scene)) return center.dot(event.towards) - event.line;
+    // Beyond the chain's ends the line goes on as the undeformed one, however the last segment has turned.
     double nearest = infinity, past = 0.0;
     for (std::size_t i = 0; i < state.moving_elements.size(); ++i) {
         const Pose pose = pose_of(scene, i, state);
         const Vec3 local = pose.rotation.transpose() * (center - pose.position);
-        const double beyond =
-            std::max(0.0, std::abs(local.y()) - scene.barrier->moving_elements[i].half_length);
-        const double distance = std::hypot(local.x(), beyond);
-        if (distance < nearest) nearest = distance, past = local.x();
+        const double half = scene.barrier->moving_elements[i].half_length;
+        const Vec3 end = pose.position + pose.rotation * (std::clamp(local.y(), -half, half) * Vec3::UnitY());
+        const double distance = std::hypot(local.x(), std::max(0.0, std::abs(local.y()) - half));
+        if (distance >= nearest) continue;
+        nearest = distance;
+        past = std::abs(local.y()) > half ? (center - end).dot(event.towards) : local.x();
     }
     return past;
 }
@@ -125,6 +128,20 @@ bool stands_over_barrier(const Scene& scene, const State& state) {
 
 Vec3 line_direction(const Event& event) {
     return {-event.towards.y(), event.towards.x(), 0.0};
+}
+
+bool is_clear_of_barrier(const Scene& scene, const State& state, const Event& event) {
+    const Vec3& center = state.units.front().body.position;
+    const Vec3 line = line_direction(event);
+    const double far = tolerance::clear_of_barrier * scene.vehicle->units.front().trusses.reach;
+    const auto outside = [&](std::size_t i, const Vec3& direction) {
+        const Range range = range_along(scene, i, state, direction);
+        const double at = center.dot(direction);
+        return std::max({0.0, range.low - at, at - range.high});
+    };
+    for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i)
+        if (std::hypot(outside(i, line), outside(i, event.towards)) <= far) return false;
+    return true;
 }
 
 bool crossed_beside_elements(const Scene& scene, const State& state, const Event& event) {

@@ -30,6 +30,9 @@ bool stands_over_barrier(const Scene& scene, const State& state);
 // Is the mass centre of unit 0 behind the far side of an element over which it crossed the line?
 bool is_behind_element(const Scene& scene, const State& state, const Event& event);
 
+// Is it further from all elements than a vehicle that comes past an end of the barrier?
+bool is_clear_of_barrier(const Scene& scene, const State& state, const Event& event);
+
 // Did it cross the line where no element stands?
 bool crossed_beside_elements(const Scene& scene, const State& state, const Event& event);
 

@@ -22,9 +22,10 @@ class Rating:
     Attributes
     ----------
     standard : str
-    designation : str
-        As the standard writes it: ``"M50-P1"``, ``"K12-L3"``, ``"V/7200[N3C]/80/90:0.8"``, ``"MASH 3-11:
-        pass"``; what begins with ``"no rating"`` has none.
+    verdict : str
+        Class or code of a security barrier, as ``"M50-P1"``, ``"K12-L3"``, ``"V/7200[N3C]/80/90:0.8"``;
+        ``"pass"`` or ``"fail"`` of a roadside barrier, with its classes. ``"no rating: ..."`` names the
+        conditions of the standard that are not met.
     penetration : float
         Greatest dynamic distance of the standard's point of the vehicle past the standard's datum of the
         barrier [m]; negative where it stays before it. Of MASH and EN 1317: of any part of the vehicle past
@@ -33,19 +34,42 @@ class Rating:
         Whether the vehicle was kept from going on past the barrier, within the standard's worst class.
     criteria : tuple of Criterion
         Name, value, limit, verdict of all that was judged or is reported.
-    caution : str
-        What the standard and the model say about a rating that was computed.
+    cautions : tuple of str
+        Why the run can not be relied on, if so, and what the standard and the model say about a rating that
+        was computed.
     vehicle_class : str
         What the standard calls the vehicle.
+    test : str
+        Test or level of a roadside standard that the run is rated as, as ``"3-11"``; "" of others.
+    is_rated : bool
+        Whether the conditions of the standard are met: mass, speed, angle.
+    is_final : bool
+        Whether the penetration can not grow any more.
+    is_clear : bool
+        Whether a fail rests on more than occupant risk that the model's error decides on.
     """
 
     standard: str
-    designation: str
+    verdict: str
     penetration: float
     contained: bool
     criteria: tuple[Criterion, ...]
-    caution: str
+    cautions: tuple[str, ...]
     vehicle_class: str
+    test: str = ""
+    is_rated: bool = True
+    is_final: bool = True
+    is_clear: bool = True
+
+    @property
+    def designation(self) -> str:
+        """As the standard writes it: ``"M50-P1"``, ``"MASH 3-11: pass"``."""
+        return f"{self.standard} {self.test}: {self.verdict}" if self.test else self.verdict
+
+    @property
+    def caution(self) -> str:
+        """All cautions as one text."""
+        return " ".join(self.cautions)
 
     @property
     def passed(self) -> bool:
@@ -57,12 +81,6 @@ class Rating:
         return "\n".join([self.title, criteria_text(self.criteria), f"Caution: {self.caution}", _NO_BAND])
 
     __str__ = summary
-
-    @property
-    def test(self) -> str:
-        """Test or level of a roadside standard that the run is rated as, as ``"3-11"``; "" of others."""
-        of, colon, _ = self.designation.removeprefix(f"{self.standard} ").partition(": ")
-        return of if colon and self.designation.startswith(f"{self.standard} ") else ""
 
     @property
     def title(self) -> str:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,14 +11,21 @@ from .. import units
 from ..barrier.barrier import Barrier
 from ..barrier.kinds import Jersey
 from .criteria import Criterion
-from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H
+from .limits import ASI_CLASSES, FLAIL_LIMITS, THIV_LIMIT_KM_H
 from .vehicles import HEAVY_KG
 
 if TYPE_CHECKING:
     from ..result import Result
     from .roadside import RoadsideStandard, RoadsideTest
 
-__all__ = ["level_caution", "model_caution", "risk_lines", "roadside_lines", "tipping_lines"]
+__all__ = [
+    "fails_clearly",
+    "level_cautions",
+    "model_cautions",
+    "risk_lines",
+    "roadside_lines",
+    "tipping_lines",
+]
 
 _BODY = (
     "Indicative: computed, not tested. The vehicle is one rigid body, or two, with a crushable skin: a load "
@@ -65,6 +71,7 @@ EN 1317 has none.
 """
 _SPEED_ERROR = 0.15  # of OIV in the two tests of tests/validation/ratings.md: -2 and +15 %
 _RISK_LIMITS = {
+    "ASI": ASI_CLASSES["C"],
     "THIV": THIV_LIMIT_KM_H,
     "H: OIV, longitudinal": FLAIL_LIMITS["MASH"].velocity[1],
     "H: OIV, lateral": FLAIL_LIMITS["MASH"].velocity[1],
@@ -81,13 +88,13 @@ _OLDER = {"TL-4": "; 32 in by NCHRP 350"}
 _ROUNDED = 0.01  # m; heights are given in whole centimetres, as 0.91 m for 36 in
 
 
-def model_caution(barrier: Barrier | None) -> str:
+def model_cautions(barrier: Barrier | None) -> tuple[str, ...]:
     """Return what the model leaves out of every rating at a barrier."""
     if barrier is not None and barrier.stands_free() is not None:
-        return f"{_BODY} {_FREE} {_LIMITS}"
+        return _BODY, _FREE, _LIMITS
     if barrier is not None and barrier.yields() is not None:
-        return f"{_BODY} {_YIELDING} {_LIMITS}"
-    return f"{_BODY} {_RIGID} {_LIMITS}"
+        return _BODY, _YIELDING, _LIMITS
+    return _BODY, _RIGID, _LIMITS
 
 
 def tipping_lines(result: Result) -> Iterator[str]:
@@ -112,17 +119,27 @@ def roadside_lines(result: Result, standard: RoadsideStandard, test: RoadsideTes
 
 def risk_lines(rows: Iterable[Criterion]) -> Iterator[str]:
     """Yield what the criteria of occupant risk are worth, where the model's error decides on them."""
-    near, beyond = [], []
-    for row in rows:
-        most = _RISK_LIMITS.get(row.name)
-        if most is not None and isinstance(row.value, float) and abs(row.value / most - 1.0) < _SPEED_ERROR:
-            near.append(row.name)
-        if "ridedown" in row.name and row.passed is False:
-            beyond.append(row.name)
+    judged = [row for row in rows if row.passed is not None]
+    near = [row.name for row in judged if _is_near_limit(row)]
+    beyond = [row.name for row in judged if _fails_ridedown(row)]
     if near:
         yield _NEAR.format(names=", ".join(near), error=100.0 * _SPEED_ERROR)
     if beyond:
         yield _RIDEDOWN.format(names=", ".join(beyond))
+
+
+def fails_clearly(rows: Iterable[Criterion]) -> bool:
+    """Whether a criterion fails by more than the model's error in tests."""
+    return any(row.passed is False and not (_is_near_limit(row) or _fails_ridedown(row)) for row in rows)
+
+
+def _is_near_limit(row: Criterion) -> bool:
+    limit = _RISK_LIMITS.get(row.name)
+    return limit is not None and isinstance(row.value, float) and abs(row.value / limit - 1.0) < _SPEED_ERROR
+
+
+def _fails_ridedown(row: Criterion) -> bool:
+    return "ridedown" in row.name and row.passed is False
 
 
 def _is_sloped(barrier: Barrier) -> bool:
@@ -143,24 +160,24 @@ def _low_lines(barrier: Barrier, standard: RoadsideStandard, test: RoadsideTest)
         yield _LOW.format(top=top, least=least, level=level, inches=inches, older=_OLDER.get(level, ""))
 
 
-def level_caution(cautions: Mapping[str, str]) -> str:
-    """Return the caution of a level: each sentence once, after the tests that it is about if not of all.
+def level_cautions(cautions: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
+    """Return the cautions of a level: each once, after the tests that it is about if not of all.
 
     Parameters
     ----------
     cautions
-        Test -> caution of its rating.
+        Test -> cautions of its rating.
     """
     tests: dict[str, list[str]] = {}
-    for test, caution in cautions.items():
-        for sentence in dict.fromkeys(re.split(r"(?<=\.) (?=[A-Z])", caution)):
-            tests.setdefault(sentence, []).append(test)
+    for test, of_test in cautions.items():
+        for caution in of_test:
+            tests.setdefault(caution, []).append(test)
     groups: dict[tuple[str, ...], list[str]] = {}
-    for sentence, names in tests.items():
-        groups.setdefault(tuple(names), []).append(sentence)
+    for caution, names in tests.items():
+        groups.setdefault(tuple(names), []).append(caution)
     common = groups.pop(tuple(cautions), [])
-    own = [
-        f"Test{'s' if len(names) > 1 else ''} {', '.join(names)}: {' '.join(sentences)}"
-        for names, sentences in groups.items()
-    ]
-    return " ".join([*common, *own])
+    own = (
+        f"Test{'s' if len(names) > 1 else ''} {', '.join(names)}: {' '.join(of_tests)}"
+        for names, of_tests in groups.items()
+    )
+    return (*common, *own)

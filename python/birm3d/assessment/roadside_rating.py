@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from .. import units
 from ..result.event import gets_past, has_rolled_over, is_open, longer_run, outcome_words
+from ..result.run_warnings import doubt_lines
 from ..result.segment_motion import base_corners
 from .criteria import Criterion
 from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H, graded, severity_class
@@ -24,7 +25,7 @@ from .measures import (
 )
 from .occupant import occupant_risk
 from .rating import Rating, first_reached
-from .rating_caution import level_caution, model_caution, risk_lines, roadside_lines
+from .rating_caution import fails_clearly, level_cautions, model_cautions, risk_lines, roadside_lines
 from .roadside import RoadsideStandard, RoadsideTest
 from .vehicles import HEAVY_KG, StandardVehicle, standard_vehicle
 
@@ -40,6 +41,7 @@ _UPRIGHT = (
     f"not rolled over; roll and pitch within {_MOST_ROLL:g} deg, roll at the end within {_MOST_AT_END:g} deg"
 )
 _NO_ANGLE = "; EN 1317 gives no angle: the first is MASH's for light vehicles, the second chosen"
+_HEAVY_UPRIGHT = "G: upright"
 _SLACK = 1e-9  # rounding of the units
 _LEAST_SEVERITY = 0.92  # of the nominal impact severity, MASH
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
@@ -61,33 +63,36 @@ def rate_roadside(
     conditions = _conditions(result, standard, test)
     light = test.vehicle.mass < HEAVY_KG
     intrusion = vehicle_intrusion(result)
-    judge = _mash if standard.name == "MASH" else _european
-    judged, classes = judge(result, test, light, intrusion)
-    rows = (*conditions, *judged)
-    failed = [row.name for row in rows if row.passed is False]
+    judged = (_mash if standard.name == "MASH" else _european)(result, light, intrusion)
+    rows = (*conditions, *judged.rows)
+    failed = any(row.passed is False for row in judged.rows)
+    is_clear = not failed or fails_clearly(judged.rows)
     unmet = [row.name for row in conditions if row.passed is False]
-    verdict = f"no rating: {', '.join(unmet)}" if unmet else "fail" if failed else "pass"
     levels = [level for level, tests in standard.levels.items() if test.name in tests]
-    designation = (
-        f"{standard.name} {test.name}: {verdict}{classes if verdict != 'fail' and not unmet else ''}"
-    )
-    reported = Criterion("levels with this test", ", ".join(levels), "", "", None)
     return Rating(
         standard.name,
-        designation,
+        f"no rating: {', '.join(unmet)}" if unmet else _verdict(failed, is_clear, judged.classes),
         intrusion,
-        judged[0].passed is True,
-        (*rows, reported),
-        " ".join(
-            [
-                standard.caution,
-                *risk_lines(judged),
-                *roadside_lines(result, standard, test),
-                model_caution(result.scene.barrier),
-            ]
+        judged.contained.passed is True,
+        (*rows, Criterion("levels with this test", ", ".join(levels), "", "", None)),
+        (
+            *doubt_lines(result),
+            standard.caution,
+            *risk_lines(judged.rows),
+            *roadside_lines(result, standard, test),
+            *model_cautions(result.scene.barrier),
         ),
         test.vehicle.code,
+        test.name,
+        is_rated=not unmet,
+        is_clear=is_clear,
     )
+
+
+def _verdict(failed: bool, is_clear: bool, classes: str) -> str:
+    if not failed:
+        return f"pass{classes}"
+    return "fail" if is_clear else "fail, within the model's error"
 
 
 def _test_of(
@@ -266,18 +271,23 @@ def _box_row(box: ExitBox, judged: bool, contained: bool) -> Criterion:
     return Criterion("exit box, wheels from the face", box.reached, "m", limit, met, grade)
 
 
-_Judged = tuple[tuple[Criterion, ...], str]
+class _Judged(NamedTuple):
+    contained: Criterion
+    others: tuple[Criterion, ...]
+    classes: str = ""  # of a run that passes, as the verdict has them
+
+    @property
+    def rows(self) -> tuple[Criterion, ...]:
+        return self.contained, *self.others
 
 
-def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> _Judged:
+def _mash(result: Result, light: bool, intrusion: float) -> _Judged:
     risk = occupant_risk(result)
     limits = FLAIL_LIMITS["MASH"]
     roll, pitch = _attitude(result)
     became, upright = _upright(result)
-    rows: list[Criterion] = [
-        _containment(result, "A: contained, redirected or stopped"),
-        Criterion("D: compartment", "not computed", "", "", None),
-    ]
+    contained = _containment(result, "A: contained, redirected or stopped")
+    rows = [Criterion("D: compartment", "not computed", "", "", None)]
     if light:
         rows += [
             Criterion("F: upright", became, "", _UPRIGHT, upright),
@@ -291,7 +301,7 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
     else:
         rows += [
             Criterion(
-                "G: upright",
+                _HEAVY_UPRIGHT,
                 became,
                 "",
                 "preferable",
@@ -304,23 +314,22 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
     # MASH measures to the furthest part of the barrier or of the vehicle, EN 1317 to that of the barrier.
     width = max(_working_width(result), intrusion)
     rows += [
-        _box_row(exit_box(result, not light), judged=False, contained=rows[0].passed is True),
+        _box_row(exit_box(result, not light), judged=False, contained=contained.passed is True),
         Criterion("dynamic deflection", _deflection(result), "m", "", None),
         Criterion("working width", width, "m", "none; of barrier and vehicle", None),
         Criterion("vehicle intrusion", intrusion, "m", "", None),
         Criterion("ASI", risk.asi, "", "", None),
         Criterion("THIV", risk.thiv / units.km_h, "km/h", "", None),
     ]
-    return tuple(rows), ""
+    return _Judged(contained, tuple(rows))
 
 
-def _european(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> _Judged:
+def _european(result: Result, light: bool, intrusion: float) -> _Judged:
     roll, _ = _attitude(result)
     became, upright = _upright(result)
     width = _working_width(result)
     contained = _containment(result, "containment")
-    rows: list[Criterion] = [
-        contained,
+    rows = [
         Criterion("upright", became, "", _UPRIGHT + _NO_ANGLE, upright),
         Criterion(_roll_name(result), roll, "deg", "", None),
         Criterion("roll at the end", _roll_at_end(result), "deg", "", None),
@@ -346,7 +355,7 @@ def _european(result: Result, test: RoadsideTest, light: bool, intrusion: float)
         _class_row("vehicle intrusion", intrusion, "VI"),
     ]
     classes += [row.grade for row in rows[-2:] if row.grade]
-    return tuple(rows), f"; {', '.join(classes)}" if classes else ""
+    return _Judged(contained, tuple(rows), f"; {', '.join(classes)}" if classes else "")
 
 
 def _class_row(name: str, value: float, letter: str) -> Criterion:
@@ -383,27 +392,29 @@ def level_rating(standard: RoadsideStandard, level: str, ratings: Sequence[Ratin
         Criterion(f"test {name}", _outcome_of(part), "", "pass", part.passed)
         for name, part in zip(standard.levels[level], parts, strict=True)
     )
-    good = all(part.passed for part in parts)
-    classes = _worst_classes(parts) if good else ""
+    failed = not all(part.passed for part in parts)
+    is_clear = not failed or any(part.is_clear for part in parts if not part.passed)
     return Rating(
         standard.name,
-        f"{standard.name} {level}: {'pass' if good else 'fail'}{classes}",
+        _verdict(failed, is_clear, _worst_classes(parts)),
         max(part.penetration for part in parts),
         all(part.contained for part in parts),
         rows,
-        level_caution({name: by_test[name].caution for name in standard.levels[level]}),
+        level_cautions({name: by_test[name].cautions for name in standard.levels[level]}),
         ", ".join(part.vehicle_class for part in parts),
+        level,
+        is_clear=is_clear,
     )
 
 
 def _outcome_of(part: Rating) -> str:
     """Return what became of a test, and which criteria it failed."""
     failed = [f"{row.name} ({row.shown})" for row in part.criteria if row.passed is False]
-    verdict = part.designation.partition(": ")[2]
+    verdict = part.verdict
     for row in part.criteria:
-        if row.name == "G: upright" and row.grade == "no":
+        if row.name == _HEAVY_UPRIGHT and row.grade == "no":
             verdict += ", rolled over" if row.value == "rolled over" else ", not upright"
-    return f"{verdict} by {', '.join(failed)}" if failed and verdict.startswith("fail") else verdict
+    return f"{verdict} by {', '.join(failed)}" if failed and part.is_rated else verdict
 
 
 def _worst_classes(parts: Sequence[Rating]) -> str:

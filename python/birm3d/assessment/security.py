@@ -21,7 +21,7 @@ from ..vehicle.joint import LONGEST_SLIP
 from .criteria import Criterion
 from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
 from .rating import Rating, first_reached
-from .rating_caution import model_caution, tipping_lines
+from .rating_caution import model_cautions, tipping_lines
 from .vehicles import A_PILLAR, LOAD_BED, StandardVehicle, standard_vehicle
 
 if TYPE_CHECKING:
@@ -158,7 +158,7 @@ def rate_security(
     )
     became = Criterion("outcome", outcome_words(result.outcome), "", "", None, result.outcome_detail)
     rate = {"levels": _astm, "K": _dos, "code": _code}[standard.style]
-    designation, contained, rows = rate(result, standard, vehicle, found)
+    verdict, contained, rows = rate(result, standard, vehicle, found)
     rows = (*rows[:-1], *heading_rows(result, _HEAD_ON), rows[-1])
     failed = [
         row.name if found.final or row is not rows[-1] else _GOES_ON
@@ -167,20 +167,20 @@ def rate_security(
     ]
     return Rating(
         standard.name,
-        f"no rating: {', '.join(failed)}" if failed else designation,
+        f"no rating: {', '.join(failed)}" if failed else verdict,
         found.greatest,
         contained,
         (mass, *rows[:-1], measured, rows[-1], became),
-        " ".join(
-            [
-                *doubt_lines(result),
-                *tipping_lines(result),
-                standard.caution,
-                *_of_bed(result),
-                model_caution(result.scene.barrier),
-            ]
+        (
+            *doubt_lines(result),
+            *tipping_lines(result),
+            standard.caution,
+            *_of_bed(result),
+            *model_cautions(result.scene.barrier),
         ),
         vehicle.code,
+        is_rated=not failed,
+        is_final=found.final,
     )
 
 

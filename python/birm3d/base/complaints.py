@@ -21,6 +21,7 @@ class Complaint(NamedTuple):
     quantity: str
     value: float  # the greater the worse
     text: Callable[[], str]
+    advice: Callable[[], str] | None = None  # for cautions and reports, where the outcome is in doubt
 
     def warn(self) -> None:
         """Warn of it, at the line that called this package."""
@@ -45,7 +46,7 @@ class Complaints:
 
     def add(self, row: int, complaints: Iterable[Complaint]) -> None:
         """Take the complaints of one run."""
-        for category, quantity, value, text in complaints:
+        for category, quantity, value, text, _ in complaints:
             kind = self._kinds.get((category, quantity))
             if kind is None:
                 kind = self._kinds[category, quantity] = _Kind()

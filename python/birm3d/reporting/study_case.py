@@ -123,7 +123,7 @@ def case_of(
     framed = result if result.frames is not None else result.with_frames(min(_FRAMES, len(result.time)))
     ratings, reasons = _rated(framed, asked)
     risk = _risk(framed)
-    names = [rating.standard for rating in ratings if "no rating" not in rating.designation]
+    names = [rating.standard for rating in ratings if rating.is_rated]
     loads = _loads(framed) if design_loads is None else design_loads
     own = loads if design_loads is None and isinstance(loads, DesignLoad) else None
     with_risk = not isinstance(risk, str)
@@ -157,7 +157,7 @@ def _rated(result: Result, asked: Asked) -> tuple[tuple[Rating, ...], dict[str, 
             ratings.append(rate(result, standard, vehicle_class=called))
         except ValueError as reason:  # the standard does not know the vehicle
             reasons[standard] = str(reason)
-    ratings.sort(key=lambda rating: "no rating" in rating.designation)
+    ratings.sort(key=lambda rating: not rating.is_rated)
     return tuple(ratings), reasons
 
 

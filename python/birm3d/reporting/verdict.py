@@ -10,7 +10,7 @@ from statistics import median
 from ..assessment import DesignLoad, ElementDesign, OccupantRisk, Rating
 from ..assessment.criteria import Criterion
 from ..assessment.design_remarks import ASSUMED, greatest_of_periods
-from ..assessment.rating_caution import model_caution
+from ..assessment.rating_caution import model_cautions
 from ..assessment.vehicles import HEAVY_KG
 from ..result.element_loads import touched_elements
 from ..result.event import outcome_words
@@ -54,9 +54,12 @@ def verdict_section(case: Case) -> Section:
         rows = [(name, _reason(case, reason)) for name, reason in case.not_rated.items()]
         blocks.append(Table("Standards that do not rate this run", ("standard", "why"), rows))
     if case.ratings:
-        model = model_caution(result.scene.barrier)
-        own = (f"{one.standard}: {one.caution.replace(model, '').strip()}" for one in case.ratings)
-        blocks += [Caution(text) for text in (model, *own) if not text.endswith(":")]
+        model = model_cautions(result.scene.barrier)
+        blocks.append(Caution(" ".join(model)))
+        for rating in case.ratings:
+            own = " ".join(one for one in rating.cautions if one not in model)
+            if own:
+                blocks.append(Caution(f"{rating.standard}: {own}"))
     return Section("Verdict", "verdict", blocks)
 
 
@@ -188,8 +191,7 @@ def _penetration(rating: Rating) -> str:
         return f"its furthest part {distance:.2f} m past the undeformed traffic face"
     if distance < 0.0:
         return f"its reference point stays {-distance:.2f} m short of the datum"
-    goes_on = any("at least this" in one.grade for one in rating.criteria)
-    return f"penetration {'at least ' if goes_on else ''}{distance:.2f} m"
+    return f"penetration {'' if rating.is_final else 'at least '}{distance:.2f} m"
 
 
 def _without_value(reason: str) -> str:

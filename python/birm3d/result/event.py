@@ -53,7 +53,9 @@ if TYPE_CHECKING:
 __all__ = [
     "CONTAINED",
     "DECIDED",
+    "HELD",
     "OUTCOMES",
+    "PAST",
     "Metrics",
     "gets_past",
     "has_rolled_over",
@@ -66,7 +68,11 @@ __all__ = [
 
 CONTAINED = ("stopped", "redirected")
 """Outcomes of a vehicle that the barrier contains."""
-OUTCOMES = (*CONTAINED, "passed", "overridden", "rolled_over", "undecided")
+HELD = (*CONTAINED, "rolled_over")
+"""Outcomes of a vehicle that does not get past the barrier, upright or not."""
+PAST = ("passed", "overridden")
+"""Outcomes of a vehicle that gets past the barrier."""
+OUTCOMES = (*CONTAINED, *PAST, "rolled_over", "undecided")
 """All words that :attr:`birm3d.Result.outcome` may be."""
 
 
@@ -77,7 +83,7 @@ def outcome_words(outcome: str) -> str:
 
 def gets_past(result: RunRecord) -> bool:
     """Whether the vehicle passed the barrier, or went over it."""
-    return result.outcome in ("passed", "overridden")
+    return result.outcome in PAST
 
 
 def has_rolled_over(result: RunRecord) -> bool:

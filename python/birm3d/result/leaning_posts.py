@@ -13,10 +13,9 @@ from .event import CONTAINED
 if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
-    from .analysis import RunAnalysis
     from .stored import Stored
 
-__all__ = ["LeaningPostWarning", "leaning_post_lines", "leaning_posts"]
+__all__ = ["LeaningPostWarning", "leaning_posts"]
 
 _FASTEST = 3.0  # m/s: more than a van that pitches at rigid posts has
 _STEEPEST = 45.0  # deg: a little less than where a post becomes a ramp, see kernels/indentation.hpp
@@ -30,31 +29,33 @@ class LeaningPostWarning(UserWarning):
     """
 
 
-def leaning_posts(scene: Scene, statistics: _core.StepStatistics, event: _core.Event) -> Iterator[Complaint]:
+def leaning_posts(
+    scene: Scene, statistics: _core.StepStatistics | Stored, event: _core.Event | Stored
+) -> Iterator[Complaint]:
     """Yield a complaint if posts that yield threw the vehicle up, or held it though they lie low."""
+    title = scene.vehicle.title
     if _throws(scene, statistics):
         speed = statistics.fastest_rise
-        yield Complaint(
-            LeaningPostWarning, "fastest_rise", speed, partial(_thrown, scene.vehicle.title, speed)
-        )
+        text, advice = partial(_thrown, title, speed), partial(_thrown_advice, speed)
+        yield Complaint(LeaningPostWarning, "fastest_rise", speed, text, advice)
     elif event.outcome in CONTAINED and _lie_low(statistics):
         tilt = math.degrees(statistics.greatest_tilt)
-        yield Complaint(LeaningPostWarning, "post_tilt", tilt, partial(_held, scene.vehicle.title, tilt))
+        text, advice = partial(_held, title, tilt), partial(_held_advice, tilt)
+        yield Complaint(LeaningPostWarning, "post_tilt", tilt, text, advice)
 
 
-def leaning_post_lines(result: RunAnalysis) -> Iterator[str]:
-    """Yield the warning for cautions and reports, if there is one."""
-    scene, statistics = result.scene, result.statistics
-    if _throws(scene, statistics):
-        yield (
-            f"Leaning posts throw the vehicle up at {statistics.fastest_rise:.1f} m/s. How firmly a real "
-            "front holds to a post that leans is not known. Do not rely on the outcome."
-        )
-    elif result.outcome in CONTAINED and _lie_low(statistics):
-        yield (
-            f"Posts lean by {math.degrees(statistics.greatest_tilt):.0f} degrees. Whether posts that lie so "
-            "low hold a real vehicle is not known. Do not rely on the outcome."
-        )
+def _thrown_advice(speed: float) -> str:
+    return (
+        f"Leaning posts throw the vehicle up at {speed:.1f} m/s. How firmly a real front holds to a post "
+        "that leans is not known. Do not rely on the outcome."
+    )
+
+
+def _held_advice(tilt: float) -> str:
+    return (
+        f"Posts lean by {tilt:.0f} degrees. Whether posts that lie so low hold a real vehicle is not known. "
+        "Do not rely on the outcome."
+    )
 
 
 # Results of earlier versions do not have the numbers that these two look at.

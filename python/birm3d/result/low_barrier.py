@@ -13,9 +13,9 @@ from .event import CONTAINED
 if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
-    from .analysis import RunAnalysis
+    from .stored import Stored
 
-__all__ = ["LowBarrierWarning", "low_barrier", "low_barrier_lines"]
+__all__ = ["LowBarrierWarning", "low_barrier"]
 
 _SAME = 1e-3  # m
 _FORWARDS = 45.0  # deg of yaw and roll, up to which the front or its corner comes first
@@ -31,7 +31,7 @@ class LowBarrierWarning(UserWarning):
     """
 
 
-def low_barrier(scene: Scene, event: _core.Event) -> Iterator[Complaint]:
+def low_barrier(scene: Scene, event: _core.Event | Stored) -> Iterator[Complaint]:
     """Yield a complaint if such a barrier contains a vehicle that comes forwards."""
     if event.outcome not in CONTAINED or event.manner == "rests_untouched":
         return
@@ -39,16 +39,11 @@ def low_barrier(scene: Scene, event: _core.Event) -> Iterator[Complaint]:
     if found is not None:
         height, top = found
         text = partial(_text, scene.vehicle.title, height, top)
-        yield Complaint(LowBarrierWarning, "height", height - top, text)
+        yield Complaint(LowBarrierWarning, "height", height - top, text, partial(_advice, height, top))
 
 
-def low_barrier_lines(result: RunAnalysis) -> Iterator[str]:
-    """Yield the warning for cautions and reports, if there is one."""
-    found = _heights(result.scene) if result.outcome in CONTAINED else None
-    if found is None:
-        return
-    height, top = found
-    yield (
+def _advice(height: float, top: float) -> str:
+    return (
         f"The barrier ends {top:.2f} m above the ground. A third of the front's resistance stands above "
         f"{height:.2f} m. The computed front is held by its lower part; a real one may ride over. Do not "
         "rely on the outcome."

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from .core_contact import core_complaints
 from .energy_balance import open_balances
-from .leaning_posts import leaning_post_lines, leaning_posts
-from .low_barrier import low_barrier, low_barrier_lines
+from .leaning_posts import leaning_posts
+from .low_barrier import low_barrier
 from .missed import missed_barrier
 from .overlap import overlaps
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ..base.complaints import Complaint
     from ..scene.scene import Scene
     from .analysis import RunAnalysis
+    from .stored import Stored
 
 __all__ = ["complaints_of_run", "doubt_lines", "warn_of_run"]
 
@@ -32,15 +33,24 @@ def complaints_of_run(
         core_complaints(scene, statistics),
         open_balances(scene, balances),
         missed_barrier(scene, event),
-        low_barrier(scene, event),
-        leaning_posts(scene, statistics, event),
+        _doubts(scene, statistics, event),
     )
+
+
+def _doubts(
+    scene: Scene, statistics: _core.StepStatistics | Stored, event: _core.Event | Stored
+) -> Iterator[Complaint]:
+    """Return complaints that say why the outcome can not be relied on."""
+    return chain(low_barrier(scene, event), leaning_posts(scene, statistics, event))
 
 
 def doubt_lines(result: RunAnalysis) -> Iterator[str]:
     """Yield why the outcome can not be relied on, for cautions and reports."""
-    yield from low_barrier_lines(result)
-    yield from leaning_post_lines(result)
+    if result._event is None:
+        return
+    for doubt in _doubts(result.scene, result.statistics, result._event):
+        assert doubt.advice is not None
+        yield doubt.advice()
 
 
 def warn_of_run(

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-import statistics
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import lru_cache
+from dataclasses import dataclass
 
 from .. import _core
 from ..barrier.barrier import Barrier
 from ..base.arguments import checked
 from ..vehicle.vehicle import Vehicle
-from .settings import CORNERING_STIFFNESS, EDGE_FLANK_FACTOR, MU_TIRE_BARRIER, Settings
+from .settings import Settings
 from .width_overlap import offset_of_overlap
 
 __all__ = ["APPROACH", "Scene"]
@@ -41,24 +39,19 @@ class Scene:
 
     @property
     def mu_tire_barrier(self) -> float:
-        """Friction coefficient of tyres at the barrier: what the settings ask for, or their default rule."""
-        asked = self.settings.mu_tire_barrier
-        if asked is not None:
-            return asked
-        return 0.0 if self.barrier is not None and self.barrier.friction == 0.0 else MU_TIRE_BARRIER
+        """Friction coefficient of tyres at the barrier: what the settings ask for, else 0.6.
+
+        It is 0 at a barrier without friction.
+        """
+        return self._core_settings.mu_tire_barrier
 
     @property
     def cornering_stiffness(self) -> float:
         """Cornering stiffness of the tyres [1/rad]: what the settings ask for, or the mean over the wheels.
 
-        A wheel whose zone has none, or that has no zone, counts with that of a car's tyres.
+        A wheel whose zone has none, or that has no zone, counts with that of a car's tyres, 10.
         """
-        asked = self.settings.cornering_stiffness
-        if asked is not None:
-            return asked
-        zones = list(self.vehicle.zones.values())
-        numbers = [zones[i].cornering_stiffness if i >= 0 else None for i in self.vehicle.zone_of_wheel]
-        return statistics.fmean(CORNERING_STIFFNESS if one is None else one for one in numbers or [None])
+        return self._core_settings.cornering_stiffness
 
     @property
     def edge_flank_factor(self) -> float:
@@ -66,12 +59,7 @@ class Scene:
 
         Without one in the file it is 1.25, as for cars.
         """
-        asked = self.settings.edge_flank_factor
-        if asked is not None:
-            return asked
-        file = self.vehicle.units[0]._file
-        own = None if file is None or file.indentation is None else file.indentation.edge_flank_factor
-        return EDGE_FLANK_FACTOR if own is None else own
+        return self._core_settings.edge_flank_factor
 
     def approached(self, numbers: Mapping[str, float]) -> Scene:
         """Return the same scene with other numbers of ``APPROACH``; not checked."""
@@ -92,17 +80,20 @@ class Scene:
             raise TypeError(f"barrier must be a birm3d.Barrier or None, got {type(self.barrier).__name__}")
         return _core.Scene(
             vehicle=self.vehicle.core,
-            barriers=[] if self.barrier is None else [self.barrier.core],
+            barriers=self._core_barriers,
             approach=self.approach,
-            settings=self._settings.core,
+            settings=self._core_settings,
             duration=self.duration,
         )
 
     @property
-    def _settings(self) -> Settings:
+    def _core_settings(self) -> _core.Settings:
         """With the vehicle's numbers where nothing is asked for."""
-        own = (self.mu_tire_barrier, self.cornering_stiffness, self.edge_flank_factor)
-        return _with_numbers(self.settings, *own)
+        return _core.Settings(self.settings.given, self.vehicle.core, self._core_barriers)
+
+    @property
+    def _core_barriers(self) -> list[_core.Barrier]:
+        return [] if self.barrier is None else [self.barrier.core]
 
     @property
     def path_offset(self) -> float:
@@ -128,15 +119,3 @@ class Scene:
             yaw=math.radians(self.impact_yaw),
             roll=math.radians(self.impact_roll),
         )
-
-
-@lru_cache(maxsize=16)
-def _with_numbers(
-    settings: Settings, mu_tire_barrier: float, cornering_stiffness: float, edge_flank_factor: float
-) -> Settings:
-    return replace(
-        settings,
-        mu_tire_barrier=mu_tire_barrier,
-        cornering_stiffness=cornering_stiffness,
-        edge_flank_factor=edge_flank_factor,
-    )

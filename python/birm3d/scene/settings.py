@@ -10,23 +10,7 @@ from .. import _core
 from ..base.arguments import check_fields
 from ..units import Quantity, quantity_in, si
 
-__all__ = ["CORNERING_STIFFNESS", "MU_TIRE_BARRIER", "Settings"]
-
-MU_TIRE_BARRIER = 0.6
-"""Friction coefficient of tyres on a barrier where none is asked for, see :class:`Settings`."""
-
-EDGE_FLANK_FACTOR = 1.25
-"""Factor of the skin's sideways force on a wall's edge where neither settings nor vehicle have one.
-
-Chosen to meet 150 tests of cars at 25 % overlap; no mechanism is derived for it.
-"""
-
-CORNERING_STIFFNESS = 10.0
-"""Cornering stiffness of tyres where neither settings nor vehicle have one [1/rad].
-
-Estimated for a car's tyres: published ones have 9.2 to 9.7 (0.16 to 0.17 of the load per degree; Calspan, as
-quoted by McHenry Software). Band +-20 %.
-"""
+__all__ = ["Settings"]
 
 
 def _in(unit: str, default: float | None) -> Any:
@@ -128,11 +112,11 @@ class Settings:
             if isinstance(value, str) and quantity is not None:
                 object.__setattr__(self, one.name, si(one.name, value, quantity))
         check_fields(self)
-        _ = self.core
+        _core.Settings(self.given)  # refuses what is out of range
 
     @cached_property
-    def core(self) -> _core.Settings:
-        """The same settings for the core."""
+    def given(self) -> dict[str, Any]:
+        """What the core is asked for, by name: all but what is the vehicle's or the barrier's."""
         contact_models = _core.ContactModel.__members__
         tire_models = _core.TireModel.__members__
         for name, value, known in (
@@ -141,16 +125,10 @@ class Settings:
         ):
             if value not in known:
                 raise ValueError(f"{name} must be one of {', '.join(known)}; got {value!r}")
-        given: dict[str, Any] = {one.name: getattr(self, one.name) for one in fields(self)}
+        given = {one.name: getattr(self, one.name) for one in fields(self)}
         given["contact_model"] = contact_models[self.contact_model]
         given["tire_model"] = tire_models[self.tire_model]
-        if self.mu_tire_barrier is None:
-            given["mu_tire_barrier"] = MU_TIRE_BARRIER
-        if self.cornering_stiffness is None:
-            given["cornering_stiffness"] = CORNERING_STIFFNESS
-        if self.edge_flank_factor is None:
-            given["edge_flank_factor"] = EDGE_FLANK_FACTOR
-        return _core.Settings(given)
+        return {name: value for name, value in given.items() if value is not None}
 
     def __getstate__(self) -> dict[str, object]:
-        return {name: value for name, value in self.__dict__.items() if name != "core"}
+        return {name: value for name, value in self.__dict__.items() if name != "given"}

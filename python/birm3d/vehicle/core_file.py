@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["export_core"]
 
-VERSION = 7
+VERSION = 8
 
 
 def export_core(vehicle: VehicleVariants, path: str | Path) -> None:
@@ -29,6 +29,8 @@ def export_core(vehicle: VehicleVariants, path: str | Path) -> None:
 def _lines(vehicle: VehicleVariants) -> Iterator[str]:
     arguments = vehicle._core_arguments()
     yield f"birm3d-vehicle {VERSION}"
+    for name, value in vehicle._own_settings().items():
+        yield f"{name} {_numbers([value])}"
     yield f"units {len(arguments)}"
     for unit in arguments:
         yield from _of_unit(unit)

@@ -21,7 +21,7 @@ from ..base.checks import array
 from ..units import Quantity, si
 from .built_fields import fields_of, joined_fields
 from .combination_recipe import CombinationRecipe
-from .core_arguments import core_unit, unit_arguments
+from .core_arguments import core_unit, own_settings, unit_arguments
 from .given_mass import warn_of_mass
 from .joint import Joint, JointKind
 from .old_names import OldVehicleNames
@@ -326,8 +326,7 @@ class Vehicle(OldVehicleNames):
 
         The file holds mesh, laws and mass properties, not what made them: :meth:`from_file` does not read it.
         It is text, which ``birm3d/model/vehicle_text.hpp`` describes. Its numbers are exact, so that a run in
-        C++ gives the same bits. The cornering stiffness of tyres is a setting there, see
-        :attr:`birm3d.simulation.Scene.cornering_stiffness`.
+        C++ gives the same bits.
 
         Parameters
         ----------
@@ -527,7 +526,11 @@ class ArticulatedVehicle(Vehicle):
             roll_limit=math.radians(joint.roll_limit),
             slide=np.reshape(joint.slide if joint.kind == "sliding" else (), (-1, 2)),
         )
-        return _core.Vehicle([core_unit(*unit) for unit in self._placed_units()], [core_joint])
+        units = [core_unit(*unit) for unit in self._placed_units()]
+        return _core.Vehicle(units, [core_joint], **self._own_settings())
+
+    def _own_settings(self) -> dict[str, float]:
+        return own_settings(self, self._units[0])
 
     def _placed_units(self) -> list[tuple[Vehicle, Floats, tuple[Floats, float]]]:
         """Return each unit, where its mass centre is, and what presses on it at the joint."""

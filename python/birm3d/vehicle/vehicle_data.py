@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .core_arguments import core_unit, is_shape, unit_arguments
+from .core_arguments import core_unit, is_shape, own_settings, unit_arguments
 from .dimensions import Dimensions, dimensions
 from .field_checks import check_fields
 from .recipe import VehicleArrays, VehicleRecipe
@@ -140,7 +140,11 @@ class VehicleData(VehicleFields):
     @cached_property
     def core(self) -> _core.Vehicle:
         """The same vehicle for the core."""
-        return _core.Vehicle([core_unit(self, np.zeros(3))], [])
+        return _core.Vehicle([core_unit(self, np.zeros(3))], [], **self._own_settings())
+
+    def _own_settings(self) -> dict[str, float]:
+        """Return the settings of runs that ask for none, see :func:`own_settings`."""
+        return own_settings(self, self)
 
     def _core_arguments(self) -> list[dict[str, Any]]:
         """Return what the core is made of, unit by unit: arguments of its Unit and of its TrussMesh."""

@@ -13,6 +13,8 @@ namespace {
 
 const std::string block =
     "birm3d-vehicle 8\n"
+    "cornering_stiffness 0x1.8p+2\n"
+    "edge_flank_factor 0x1p-2\n"
     "units 1\n"
     "mass 0x1.f4p+9\n"
     "inertia 0x1p+9 0x0p+0 0x0p+0 0x0p+0 0x1p+9 0x0p+0 0x0p+0 0x0p+0 0x1p+9\n"
@@ -69,6 +71,8 @@ TEST("numbers are read to the bit") {
     CHECK(unit.wheels[0].steering_time == 0.03125 && unit.wheels[0].tread_radius == 0.015625);
     CHECK(unit.wheels[0].camber_ratio == 0.0078125 && unit.wheels[0].rolling_resistance == 0.00390625);
     CHECK(unit.trusses.friction_share[0][1] == 0.25);
+    const Settings settings = usual_settings(vehicle, nullptr);
+    CHECK(settings.cornering_stiffness == 6.0 && settings.edge_flank_factor == 0.25);
     CHECK(unit.mass_center_height == 0.5);
     CHECK(unit.trusses.count == 2);
     CHECK(unit.trusses.node(0).x() == 1.0);  // 2 m, seen from 1 m
@@ -86,13 +90,13 @@ TEST("all digits count, and signs") {
 }
 
 TEST("what is wrong is named by its line") {
-    CHECK(names(refusal(with("0x1.f4p+9", "1000")), "line 3"));
-    CHECK(names(refusal(with("0x1.f4p+9", "0x1.8q+9")), "line 3"));
-    CHECK(names(refusal(with("0x1.f4p+9", "0x1.123456789abcdefp+9")), "line 3"));
-    CHECK(names(refusal(with("0x1.f4p+9", "nan")), "line 3"));
+    CHECK(names(refusal(with("0x1.f4p+9", "1000")), "line 5"));
+    CHECK(names(refusal(with("0x1.f4p+9", "0x1.8q+9")), "line 5"));
+    CHECK(names(refusal(with("0x1.f4p+9", "0x1.123456789abcdefp+9")), "line 5"));
+    CHECK(names(refusal(with("0x1.f4p+9", "nan")), "line 5"));
     CHECK(names(refusal(with("birm3d-vehicle 8", "birm3d-vehicle 1")), "version 8"));
     CHECK(names(refusal(with("birm3d-vehicle", "vehicle")), "line 1"));
-    CHECK(names(refusal(with("trusses 2", "trusses 3")), "line 21"));
+    CHECK(names(refusal(with("trusses 2", "trusses 3")), "line 23"));
     CHECK(names(refusal(with("trusses 2", "trusses -1")), ">= 0"));
     CHECK(names(refusal(with("joints 0", "joints 1\nglued 0 1")), "fifth_wheel, welded or sliding"));
     CHECK(names(refusal(block + "more"), "nothing after"));

@@ -160,11 +160,15 @@ inline constexpr double stopped_share = 0.1;
 // that rolls past the end of a barrier is stopped. Small: runs end late.
 inline constexpr double coasting_speed = 0.25;
 
+// A vehicle that was stopped or redirected is clear of the barrier beyond this many times its own reach. Where it rolls then is
+// no matter of the barrier. Large: unbraked cars that roll in a wide circle have passed.
+inline constexpr double clear_of_barrier = 2.0;
+
 // The instant at which the outcome of a run is decided is found to within this (s).
 inline constexpr double decision_resolution = 1e-6;
 
-// A run without a duration ends here at the latest (s). Where a vehicle is undecided by then and rolls on free of the barrier,
-// it is followed until it has passed, coasts or touches the barrier again, and until the second time at the latest.
+// A run without a duration ends here at the latest (s). A vehicle that is undecided by then and rolls on free of the barrier is
+// followed. That ends once it has passed, coasts or touches again, at the latest at the second time.
 inline constexpr double longest_event = 5.0, longest_rolling = 30.0;
 
 // A vehicle may start this far inside a surface (m): rounding of the initial placement only.

@@ -5,6 +5,9 @@
 
 namespace birm3d {
 
+struct Barrier;
+struct Vehicle;
+
 enum class ContactModel {
     projected,    // the truss force projected on the surface normal: keeps the energy (default)
     along_truss,  // the paper's rule, for comparison: creates or loses energy where truss and normal differ
@@ -38,5 +41,9 @@ struct Settings {
 };
 
 void require_valid(const Settings& settings);
+
+// Of a scene that asks for nothing: the vehicle's own numbers, and no friction of tyres on a barrier that has none. `barrier`
+// may be absent.
+Settings usual_settings(const Vehicle& vehicle, const Barrier* barrier);
 
 }  // namespace birm3d

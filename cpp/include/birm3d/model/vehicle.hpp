@@ -7,6 +7,7 @@
 #include "birm3d/base/types.hpp"
 #include "birm3d/geometry/box.hpp"
 #include "birm3d/model/joint.hpp"
+#include "birm3d/model/settings.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 #include "birm3d/model/wheel.hpp"
 
@@ -54,6 +55,9 @@ bool stands_on_wheels(const Unit& unit);
 struct Vehicle {
     std::vector<Unit> units;
     std::vector<Joint> joints;
+    // Numbers of settings that are this vehicle's own, see usual_settings().
+    double cornering_stiffness = Settings{}.cornering_stiffness;
+    double edge_flank_factor = Settings{}.edge_flank_factor;
 };
 
 // Refuses joints of units that do not exist or of a unit with itself. Refuses joints whose two places are more than

@@ -6,6 +6,8 @@
 // follow each count.
 //
 //   birm3d-vehicle 8
+//   cornering_stiffness c         1/rad, of its tyres
+//   edge_flank_factor k
 //   units u
 //     mass m                      kg
 //     inertia                     nine numbers, about the mass centre, body axes (kg m^2)

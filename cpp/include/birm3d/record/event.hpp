@@ -58,6 +58,7 @@ struct Event {
     double slides_from_speed = 0.0;
 
     bool left = false;        // has the vehicle left the barrier for good?
+    bool clear = false;       // and been far from it since, see tolerance::clear_of_barrier?
     bool separated = false;   // has it touched the barrier and left? Then the values of release are final
     double deflection = 0.0;  // greatest deflection of any truss as it had left, less its springback (m)
     std::uint64_t later_contacts = 0;  // number of contacts that began after it had left
