@@ -15,6 +15,8 @@ import numpy as np
 
 from .. import pictures
 from ..base.frozen_mapping import FrozenMapping
+from ..base.plain_words import plain_words
+from ..base.text_table import aligned
 from ..result.event import outcome_words
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
@@ -84,7 +86,7 @@ class Question(NamedTuple):
         text = f"the vehicle is stopped or turned away{rolled}"
         if "passed" in self.outcomes:
             text += ", or passes its end"
-        return text if self.most is None else f"{text}, {self.measure.replace('_', ' ')} <= {self.most:g} m"
+        return text if self.most is None else f"{text}, {plain_words(self.measure)} <= {self.most:g} m"
 
     def holds(self, outcome: str, measure: float) -> bool:
         """Whether a run with this outcome and measure did what it should."""
@@ -213,7 +215,7 @@ class Limit:
             "runs that hold",
             "worst offset [m]",
             "outcome",
-            f"{_words(self.measure)} [m]",
+            f"{plain_words(self.measure)} [m]",
             "",
         )
         cells = [head]
@@ -229,9 +231,7 @@ class Limit:
                     "holds" if worst.holds else "fails",
                 )
             )
-        widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
-        rows = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in cells]
-        return "\n".join([self.headline, self.study.scene_title, *self.remarks, "", *rows])
+        return "\n".join([self.headline, self.study.scene_title, *self.remarks, "", *aligned(cells)])
 
     __str__ = summary
 
@@ -429,7 +429,7 @@ def _not_in_range(
     also = f"; {', '.join(others)} {question.unit} hold, which is not monotonic" if others else ""
     worst = next(run for run in runs if run.value == order[0] and not run.holds)
     where = f"{outcome_words(worst.outcome)} at offset {worst.impact_offset:.4g} m"
-    measured = "" if math.isnan(worst.measure) else f", {_words(question.measure)} {worst.measure:.3f} m"
+    measured = "" if math.isnan(worst.measure) else f", {plain_words(question.measure)} {worst.measure:.3f} m"
     return NotInRangeError(
         f"{question.argument} must have a {end} value that holds ({question.criterion}), got "
         f"{order[0]:.6g} {question.unit}: {where}{measured}{also}",
@@ -447,7 +447,3 @@ def _range(question: Question, given: Sequence[Quantity]) -> tuple[float, float]
             f"got {shown}"
         )
     return float(limits[0]), float(limits[1])
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")
