@@ -53,7 +53,9 @@ if TYPE_CHECKING:
 __all__ = [
     "CONTAINED",
     "DECIDED",
+    "HELD",
     "OUTCOMES",
+    "PAST",
     "Metrics",
     "gets_past",
     "has_rolled_over",
@@ -66,6 +68,10 @@ __all__ = [
 
 CONTAINED = ("stopped", "redirected")
 """Outcomes of a vehicle that the barrier contains."""
+HELD = (*CONTAINED, "rolled_over")
+"""Outcomes of a vehicle that does not get past the barrier, upright or not."""
+PAST = ("passed", "overridden")
+"""Outcomes of a vehicle that gets past the barrier."""
 OUTCOMES = (*CONTAINED, "passed", "overridden", "rolled_over", "undecided")
 """All words that :attr:`birm3d.Result.outcome` may be."""
 

@@ -12,11 +12,12 @@ from typing import Any
 from ..barrier.barrier import Barrier
 from ..barrier.kinds import PROFILES, Bollards, Jersey
 from ..base.arguments import checked
+from ..result.event import CONTAINED, HELD
 from ..result.leaning_posts import LeaningPostWarning
 from ..result.low_barrier import LowBarrierWarning
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
-from .limit_search import CONTAINED, Effort, Limit, Question, search_limit
+from .limit_search import Effort, Limit, Question, search_limit
 from .runner import run_study
 
 __all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass", "least_tube_thickness"]
@@ -185,7 +186,7 @@ def least_height(
         measure="vehicle_penetration",
         most=_at_most("penetration", penetration),
         caution=_OVER.format("the bumper beam" if height is None else _STRONG.format(height)),
-        outcomes=("stopped", "redirected"),  # who rolls over leans across the top
+        outcomes=CONTAINED,  # who rolls over leans across the top
     )
     limits = _usual_heights(barrier) if heights is None else heights
     effort = Effort(points, resolution, draws, executor, progress)
@@ -251,7 +252,7 @@ def least_segment_mass(
         most=_at_most("deflection", deflection),
         caution=_SLIDES,
         # Between pinned segments nothing passes: who is past the barrier and not over it has slid to its end.
-        outcomes=(*CONTAINED, "passed") if barrier.is_pinned else CONTAINED,
+        outcomes=(*HELD, "passed") if barrier.is_pinned else HELD,
     )
     effort = Effort(points, resolution, draws, executor, progress)
     found = search_limit(simulation, question, masses, effort)

@@ -17,7 +17,7 @@ from .. import pictures
 from ..base.frozen_mapping import FrozenMapping
 from ..base.plain_words import plain_words
 from ..base.text_table import aligned
-from ..result.event import outcome_words
+from ..result.event import HELD, outcome_words
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
 from .distributions import check_count
@@ -29,10 +29,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-__all__ = ["CONTAINED", "Effort", "Limit", "NotInRangeError", "Question", "SearchRun", "search_limit"]
-
-CONTAINED = ("stopped", "redirected", "rolled_over")
-"""Outcomes of a vehicle that did not get past the barrier."""
+__all__ = ["Effort", "Limit", "NotInRangeError", "Question", "SearchRun", "search_limit"]
 
 
 class SearchRun(NamedTuple):
@@ -72,7 +69,7 @@ class Question(NamedTuple):
     measure: str  # metric
     most: float | None  # of the metric
     caution: str  # what the model leaves out that bears on the answer
-    outcomes: tuple[str, ...] = CONTAINED  # that hold
+    outcomes: tuple[str, ...] = HELD  # that hold
 
     @property
     def quantity(self) -> str:
