@@ -168,7 +168,7 @@ class _ShortPaths(MetaPathFinder, Loader):
         self._spec_of: dict[str, ModuleSpec | None] = {}
 
     def find_spec(
-        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+        self, name: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
         package, _, short = name.partition(".")
         return ModuleSpec(name, self) if package == "birm3d" and short in _SHORT else None

@@ -86,6 +86,25 @@ def test_what_a_limit_says(height: Limit) -> None:
     assert height.plot().axes[0].get_xlabel() == "height [m]"
 
 
+def test_a_limit_holds_its_question(height: Limit) -> None:
+    """It is no copy of it, nothing changes it afterwards, and it goes to another process with the limit."""
+    question = pickle.loads(pickle.dumps(height)).question
+    assert question.rows(0.5) == height.question.rows(0.5) == [(0.5, 0.0)]
+    for name in ("name", "unit", "greatest", "criterion", "measure", "most", "caution"):
+        assert getattr(height, name) == getattr(question, name)
+        with pytest.raises(AttributeError):
+            setattr(height, name, None)
+
+
+def test_texts_of_a_question_have_the_unit_of_its_measure(height: Limit) -> None:
+    force = height.question._replace(measure="peak_force_50ms", most=3e5)
+    assert force.criterion.endswith(", peak force 50ms <= 300000 N")
+    assert force.measure_label == "peak force 50ms [N]"
+    ratio = height.question._replace(measure="max_overturning_ratio", most=1.0)
+    assert ratio.criterion.endswith(", max overturning ratio <= 1")
+    assert ratio.measure_label == "max overturning ratio"
+
+
 def test_a_limit_says_how_far_the_vehicle_gets_past_the_line() -> None:
     """A car that stops wedged between two posts is held, but behind their line."""
     simulation = Simulation(

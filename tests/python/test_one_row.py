@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,20 @@ def test_rows_are_complete() -> None:
             metric.error == "balance",
         )
     assert list(METRIC_UNITS) == list(METRICS)
+
+
+def test_meanings_stand_alone() -> None:
+    """The public mapping and the command line show one without the row above it."""
+    unfinished = re.compile(r"(the same|of|by|at|since|its?|that|this|these|those)\b", re.IGNORECASE)
+    assert [name for name, metric in METRICS.items() if unfinished.match(metric.meaning)] == []
+    meanings = [metric.meaning for metric in METRICS.values()]
+    assert len(set(meanings)) == len(meanings)
+
+
+def test_no_metric_has_two_rows() -> None:
+    tables = [PACKAGE / "result" / f"{name}.py" for name in ("metric_table", "load_metrics", "crush_metrics")]
+    rows = [name for path in tables for name in re.findall(r'"(\w+)": Metric\(', path.read_text("utf-8"))]
+    assert sorted(rows) == sorted(METRICS)
 
 
 def test_a_metric_is_named_in_its_row_only() -> None:

@@ -141,11 +141,11 @@ class BarrierKind:
 
         Endlessly high ones are drawn up to ``top``, endlessly long ones between the places ``seen`` [m].
         """
-        raise TypeError(f"no surface of a {type(self).__name__}")
+        raise NotImplementedError(f"no surface of a {type(self).__name__}")
 
     def seen_parts(self, angle: float) -> Iterator[SeenPart]:
         """Yield the parts that a path at an angle to the line meets [rad]: how wide each is."""
-        raise TypeError(f"no parts of a {type(self).__name__}")
+        raise NotImplementedError(f"no parts of a {type(self).__name__}")
 
     @property
     def is_pinned(self) -> bool:

@@ -10,6 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
+from typing_extensions import override
 
 from .. import _core
 from .barrier_kind import BarrierKind, Surface
@@ -149,6 +150,7 @@ class JerseyKind(BarrierKind):
             profile=np.column_stack([deep, level]),
         )
 
+    @override
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return closed segments."""
         half, level = self.half_profile().T

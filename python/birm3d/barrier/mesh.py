@@ -10,6 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
+from typing_extensions import override
 
 from .. import _core
 from .barrier_kind import BarrierKind, Surface
@@ -119,6 +120,7 @@ class MeshKind(BarrierKind):
         sizes = [f"{size:.3g}" for size in self.vertices.max(axis=0) - self.vertices.min(axis=0)]
         return f"mesh of {len(self.faces):,} triangles, {' by '.join(sizes)} m"
 
+    @override
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return the mesh."""
         return [(placed(self, self.vertices), self.faces)]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from .. import _core
 from ..base.checks import positive_and_finite
@@ -69,6 +70,7 @@ class PlanterKind(RoundedBlock):
         axes = axes_of(self.origin, self.heading)
         return FlatFront(*axes, self.height, np.zeros(1), half_width=0.5 * self.length, radius=self.rounding)
 
+    @override
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return the block."""
         if self.rounding > 0.0:

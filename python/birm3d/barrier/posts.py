@@ -10,6 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
+from typing_extensions import override
 
 from .. import _core
 from ..base.checks import MOST_ELEMENTS, positive_and_finite
@@ -62,10 +63,12 @@ class PoleKind(BarrierKind):
         axes = axes_of(self.origin, self.heading)
         return PostFront(*axes, math.inf, np.zeros(1), -0.5 * self.diameter, edges)
 
+    @override
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return the pole, as high as is seen."""
         return [cylinder(np.asarray(self.origin), 0.5 * self.diameter, top)]
 
+    @override
     def seen_parts(self, angle: float) -> Iterator[SeenPart]:
         """Yield the pole."""
         yield SeenPart("pole", self.diameter, -math.inf, math.inf)
@@ -234,11 +237,13 @@ class BollardsKind(BarrierKind):
         axes = axes_of(self.origin, self.heading)
         return PostFront(*axes, self.height, feet, -0.5 * self.diameter, edges)
 
+    @override
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return the bollards."""
         radius, height = 0.5 * self.diameter, min(self.height, top)
         return [cylinder(self.place(*place), radius, height) for place in self.places()]
 
+    @override
     def seen_parts(self, angle: float) -> Iterator[SeenPart]:
         """Yield one for all: they are equal."""
         yield SeenPart("bollards", self.diameter, -math.inf, self.origin[2] + self.height)

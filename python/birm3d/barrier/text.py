@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ..base.plain_words import plain_words
 from .barrier_kind import BarrierKind
 
 __all__ = ["barrier_text", "varied_barrier_text"]
@@ -24,5 +25,5 @@ def varied_barrier_text(barrier: BarrierKind | None, parameters: Iterable[str]) 
     if "barrier" in names:
         return "several barriers"
     own = [name.removeprefix("barrier.") for name in names if name.startswith("barrier.")]
-    words = ", ".join(_VARIED.get(name, name.replace("_", " ")) for name in own)
+    words = ", ".join(_VARIED.get(name, plain_words(name)) for name in own)
     return barrier_text(barrier) + (f"; {words} varied" if own else "")

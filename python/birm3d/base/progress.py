@@ -36,7 +36,7 @@ def progress_bar(
         What the bar says, how many there are (``None``: not known) and how many are done already.
     """
     if not _is_wanted(wanted):
-        yield lambda steps: None
+        yield lambda _steps: None
         return
     with _bar_class()(total=total, initial=done, desc=title, file=sys.stderr, dynamic_ncols=True) as bar:
 

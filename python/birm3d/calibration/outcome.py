@@ -44,7 +44,7 @@ def outcome(
     covariance = (analysis.covariance * np.outer(slopes, slopes))[np.ix_(told, told)]
     return CalibrationResult(
         parameters=tuple(fitted),
-        targets=_targets(found, values),
+        targets=_targets(found),
         chi_square=float(found.best.chi_square or 0.0),
         spread=analysis.spread,
         confidence=confidence,
@@ -119,7 +119,7 @@ def _ends_at_bounds(fitted: list[FittedParameter]) -> list[str]:
     ]
 
 
-def _targets(found: Search, values: Floats) -> tuple[FittedTarget, ...]:
+def _targets(found: Search) -> tuple[FittedTarget, ...]:
     """Measured beside computed, at the fitted values and at the parameters' own start."""
     channel = found.best.channel
     problem = channel.problem

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..base.shown_numbers import plain_number, shown_unit
+from ..base.text_table import aligned
 from .record import CalibrationRecord
 
 __all__ = ["summary"]
@@ -87,14 +88,8 @@ def _starts(result: CalibrationRecord) -> str:
 
 
 def _table(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return [
-        "  ".join(
-            cell.ljust(width) if i == 0 or rows[0][i] in ("unit", "") else cell.rjust(width)
-            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in rows
-    ]
+    numbers = [i for i, head in enumerate(rows[0]) if i > 0 and head not in ("unit", "")]
+    return aligned(rows, right=numbers)
 
 
 def _count(n: int, noun: str) -> str:

@@ -85,10 +85,10 @@ A module is loaded when its command runs: ``birm3d --help`` loads none.
 class _Commands(click.Group):
     """The commands of COMMANDS."""
 
-    def list_commands(self, ctx: click.Context) -> list[str]:
+    def list_commands(self, _ctx: click.Context) -> list[str]:
         return sorted(COMMANDS)
 
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+    def get_command(self, _ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in COMMANDS:
             return None
         place = COMMANDS[cmd_name]

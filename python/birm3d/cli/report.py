@@ -18,7 +18,7 @@ class _Folder(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 
     name = "folder"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+    def convert(self, value: Any, _param: click.Parameter | None, _ctx: click.Context | None) -> Path:
         """Return the path; a ValueError says why no dossier can be written there."""
         from ..reporting.folder import check_folder
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
+from ..base.plain_words import plain_words
 from ..plotting.blows import readable_level
 from ..plotting.energies import energy_look
 from ..plotting.plan_axes import PlanAxes
@@ -134,7 +135,7 @@ def _panels(result: Result) -> list[tuple[str, str, Curves]]:
         tires = [curve(f"wheel {i + 1}", wheels[:, i], 60) for i in range(wheels.shape[1])]
         panels.append(("Tyre reactions", "kN", tires))
     energy = [
-        (name.replace("_", " "), values / 1e3) for name, values in result.energy.items() if name != "residual"
+        (plain_words(name), values / 1e3) for name, values in result.energy.items() if name != "residual"
     ]
     panels.append((_ENERGIES, "kJ", energy))
     panels.append(("Energy residual", "J", [("residual", result.energy["residual"])]))

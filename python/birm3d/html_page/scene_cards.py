@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from .. import units
+from ..base.plain_words import plain_words
 from ..scene.text import overlap_text, scene_text
 from ..vehicle.title import kind_words, vehicle_text
 from .notebook import card, table_html
@@ -60,10 +61,10 @@ def _barrier_rows(barrier: Barrier) -> Iterator[_Row]:
     for size in barrier.sizes:
         value = getattr(barrier, size.name, None)
         if size.quantity == "flag":
-            yield size.name.replace("_", " "), "yes" if value else "no"
+            yield plain_words(size.name), "yes" if value else "no"
         elif value is not None:
             hint = f" ({size.hint})" if size.hint else ""
-            yield f"{size.name.replace('_', ' ')}{hint}", _size_text(value, size.unit)
+            yield f"{plain_words(size.name)}{hint}", _size_text(value, size.unit)
     yield "friction", f"{barrier.friction:g}"
     yield "origin", f"{', '.join(f'{place:g}' for place in barrier.origin)} m"
     yield "heading", f"{barrier.heading:g}°"

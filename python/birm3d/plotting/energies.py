@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 
+from ..base.plain_words import plain_words
 from .style import BLUE, DASH_DOT, DASHED, DOTTED, GREEN, ORANGE, RED, SOLID, Style, legend
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def plot_energies(axes: Axes, result: Result) -> None:
     looks = energy_look(list(result.energy))
     for name, values in shown.items():
         color, style, width = looks[name]
-        label = name.replace("_", " ")
+        label = plain_words(name)
         axes.plot(result.time * 1e3, values / 1e3, color=color, ls=style, lw=width, label=label)
     axes.set_ylabel("energy [kJ]")
     axes.set_title("Energy balance")

@@ -36,7 +36,8 @@ def plot_limit(limit: Limit) -> Figure:
     _runs(panels[0], limit, [run.measure for run in limit.runs])
     panels[0].set_ylabel(axis_label(limit.measure, METRIC_UNITS[limit.measure]))
     if limit.most is not None:
-        panels[0].axhline(limit.most, color="k", ls=DASHED, lw=1.0, label=f"{limit.most:g} m allowed")
+        allowed = limit.question.measured(limit.most, "g")
+        panels[0].axhline(limit.most, color="k", ls=DASHED, lw=1.0, label=f"{allowed} allowed")
     if offsets:
         _runs(panels[1], limit, [run.impact_offset for run in limit.runs])
         panels[1].set_ylabel("impact offset [m]")

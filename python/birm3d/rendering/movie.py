@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -65,7 +66,7 @@ def animate(
         raise ValueError(f"frames must be a whole number >= 2, got {frames}")
     if not 0.1 <= fps <= 240.0:
         raise ValueError(f"fps must be 0.1 to 240, got {fps}")
-    write = _writer(path, size)
+    write = _writer(path, size, fps)
     times = np.linspace(result.time[0], result.time[-1], frames)
     with (
         whole_file(path) as part,
@@ -79,27 +80,26 @@ def animate(
                 yield stage.picture()
                 advance(1)
 
-        write(part, pictures(), fps, size)
+        write(part, pictures())
 
 
 def check_movie(path: Path) -> None:
     """Refuse what :func:`animate` would refuse: a file's ending, missing packages, no drawing."""
-    _writer(path, (2, 2))
+    _writer(path, (2, 2), 25.0)
     check_drawing()
 
 
-def _writer(
-    path: Path, size: tuple[int, int]
-) -> Callable[[Path, Iterator[Picture], float, tuple[int, int]], None]:
+def _writer(path: Path, size: tuple[int, int], fps: float) -> Callable[[Path, Iterator[Picture]], None]:
+    """Return what writes pictures to a path as the ending of `path` says."""
     ending = path.suffix.lower()
     if ending == ".gif":
-        return _write_gif
+        return partial(_write_gif, fps=fps)
     if ending not in (".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi"):
         raise ValueError(f"path must end in .gif, .mp4, .m4v, .mov, .mkv, .webm or .avi, got {str(path)!r}")
     if any(n % 2 for n in size):
         raise ValueError(f"size must be even numbers for {ending}, got {size}")
     _ffmpeg(ending)
-    return _write_video
+    return partial(_write_video, fps=fps, size=size)
 
 
 def _ffmpeg(ending: str) -> Any:
@@ -111,7 +111,7 @@ def _ffmpeg(ending: str) -> Any:
     return imageio_ffmpeg
 
 
-def _write_gif(path: Path, pictures: Iterator[Picture], fps: float, size: tuple[int, int]) -> None:
+def _write_gif(path: Path, pictures: Iterator[Picture], fps: float) -> None:
     from PIL import Image
 
     # Rare colours matter, those of crush and of its bar: a palette by area would lose them.

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..base.plain_words import plain_words
 from ..pictures import Color
 from ..result.skin import Skin
 from ..vehicle.unit_shapes import UnitShape
@@ -86,9 +87,7 @@ class UnitOnStage:
             self._mesh.cell_data["zone"] = shape.zone_of_node[shape.quads[:, 0]].astype(float)
             look = {"scalars": "zone", "cmap": [_ZONES[i % len(_ZONES)] for i in range(n)]}
             look |= {"clim": (-0.5, n - 0.5), "n_colors": n, "show_scalar_bar": first}
-            look["annotations"] = {
-                float(i): name.replace("_", " ") for i, name in enumerate(shape.zone_names)
-            }
+            look["annotations"] = {float(i): plain_words(name) for i, name in enumerate(shape.zone_names)}
             look["scalar_bar_args"] = {**_bar(font), "title": "zone\n ", "n_labels": 0}
         plotter.add_mesh(
             self._mesh,

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..assessment.criteria import without_sign_of_zero
+from ..base.plain_words import plain_words
 from ..plotting.energies import plot_energies
 from ..plotting.figure import new_figure
 from ..plotting.style import prepare
@@ -246,7 +247,7 @@ def _energies(case: Case) -> Iterator[tuple[str, ...]]:
         first, last = float(values[0]), float(values[-1])
         share = f"{(last - first) / start + 0.0:+.3%}".replace("-0.000%", "+0.000%") if start > 0.0 else "–"
         yield (
-            name.replace("_", " "),
+            plain_words(name),
             without_sign_of_zero(f"{first / 1e3:,.2f}"),
             without_sign_of_zero(f"{last / 1e3:,.2f}"),
             share,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 
+from ..base.plain_words import plain_words
 from ..result.capsule import platform_facts
 from ..result.metrics import METRIC_UNITS
 from .blocks import Block, Items, Listing, Section, Table, Text
@@ -33,7 +34,7 @@ def provenance_section(case: Case, capsule: bytes) -> Section:
     result = case.result
     settings = result.scene.settings
     rows = [
-        (field.name.replace("_", " "), _plain(getattr(settings, field.name)))
+        (plain_words(field.name), _plain(getattr(settings, field.name)))
         for field in dataclasses.fields(settings)
     ]
     digest = hashlib.blake2b(capsule, digest_size=16).hexdigest()

@@ -7,6 +7,7 @@ from typing import Any
 
 from .. import units
 from ..barrier.text import barrier_text
+from ..base.plain_words import plain_words
 from ..base.shown_numbers import shown_value
 from ..result.report import END_REASONS
 from ..simulation.zone_numbers import unit_of_number
@@ -144,7 +145,7 @@ def _remarks(zone: Any, changed: bool) -> tuple[str, str]:
 
 def _zone_words(name: str) -> str:
     """Return a zone in words; ``door.along`` is the law of the door's panel in its own plane."""
-    zone, _, along = name.replace("_", " ").partition(".")
+    zone, _, along = plain_words(name).partition(".")
     return f"{zone}, along the vehicle" if along else zone
 
 

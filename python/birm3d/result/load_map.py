@@ -197,7 +197,10 @@ def load_map(
     shape = (len(edges_z) - 1, len(edges_y) - 1)
     spread = SPREAD if front.columns is None else 0.0
     cells = _in_time(result.time, steps, edges, front.top, spread)
-    force = (_completed if front.columns is None else _completed_posts)(result, front, steps, cells, edges)
+    if front.columns is None:
+        force = _completed(result, front, steps, cells, edges)
+    else:
+        force = _completed_posts(result, front, cells, edges)
     inner = force[:, :-1].reshape(-1, *shape)
     return LoadMap(result.time, edges_y, edges_z, inner, force[:, -1], scene_text(result.scene, "\n"))
 
@@ -266,9 +269,7 @@ def _completed(
     return cells
 
 
-def _completed_posts(
-    result: RunRecord, front: Front, steps: list[FaceStep], cells: Floats, edges: tuple[Floats, Floats]
-) -> Floats:
+def _completed_posts(result: RunRecord, front: Front, cells: Floats, edges: tuple[Floats, Floats]) -> Floats:
     """Scale the column of each post in place to the post's force; without nodes its moment has the height."""
     rows, columns = len(edges[1]) - 1, len(edges[0]) - 1
     for i, load in enumerate(element_loads(result)):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..base.plain_words import plain_words
 from .element_loads import touched_elements
 from .event import outcome_words
 from .metric_table import GROUPS, METRICS
@@ -48,7 +49,7 @@ def shown_as(name: str) -> tuple[str, float, str]:
     if shown is not None:
         return shown.label, shown.size, shown.unit
     unit = METRICS[name].unit if name in METRICS else ""
-    return name.replace("_", " "), 1.0, unit
+    return plain_words(name), 1.0, unit
 
 
 def outcome_rows(result: RunAnalysis) -> list[tuple[str, str, str]]:

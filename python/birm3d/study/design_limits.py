@@ -7,16 +7,21 @@ import dataclasses
 import math
 import warnings
 from collections.abc import Callable, Sequence
+from functools import partial
+from operator import add
 from typing import Any
 
 from ..barrier.barrier import Barrier
+from ..barrier.free_standing import FreeStanding
 from ..barrier.kinds import PROFILES, Bollards, Jersey
 from ..base.arguments import checked
+from ..result.event import CONTAINED, HELD
 from ..result.leaning_posts import LeaningPostWarning
 from ..result.low_barrier import LowBarrierWarning
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
-from .limit_search import CONTAINED, Effort, Limit, Question, search_limit
+from .limit_question import Question
+from .limit_search import Effort, Limit, search_limit
 from .runner import run_study
 
 __all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass", "least_tube_thickness"]
@@ -107,14 +112,15 @@ def greatest_gap(
     >>> found.value, found.fails_at, found.monotonic
     """
     row = _row(simulation)
+    _check_offsets("offset_shares", offset_shares)
     question = Question(
         name="clear gap",
         argument="gaps",
         unit="m",
         greatest=True,
         parameter="barrier.spacing",
-        of_value=lambda gap: gap + row.diameter,
-        offsets=_along_row(row, offset_shares, lambda gap: gap + row.diameter),
+        of_value=partial(add, row.diameter),
+        offsets=partial(_along_row, row, tuple(offset_shares)),
         measure="vehicle_penetration",
         most=_at_most("penetration", penetration),
         caution=_SKIN,
@@ -185,7 +191,7 @@ def least_height(
         measure="vehicle_penetration",
         most=_at_most("penetration", penetration),
         caution=_OVER.format("the bumper beam" if height is None else _STRONG.format(height)),
-        outcomes=("stopped", "redirected"),  # who rolls over leans across the top
+        outcomes=CONTAINED,  # who rolls over leans across the top
     )
     limits = _usual_heights(barrier) if heights is None else heights
     effort = Effort(points, resolution, draws, executor, progress)
@@ -237,26 +243,23 @@ def least_segment_mass(
     barrier = _barrier(simulation)
     if not isinstance(barrier, Jersey) or barrier.free_standing is None:
         raise ValueError(f"simulation must have a free-standing Jersey barrier, got {barrier}")
-    free = barrier.free_standing
-    length = barrier.length / barrier.segments
     question = Question(
         name="segment mass",
         argument="masses",
         unit="kg",
         greatest=False,
         parameter="barrier.free_standing",
-        of_value=lambda mass: dataclasses.replace(free, density=None, mass_per_length=mass / length),
+        of_value=partial(_with_mass, barrier.free_standing, barrier.length / barrier.segments),
         offsets=_usual_offsets(simulation, barrier, offsets),
         measure="barrier_deflection",
         most=_at_most("deflection", deflection),
         caution=_SLIDES,
         # Between pinned segments nothing passes: who is past the barrier and not over it has slid to its end.
-        outcomes=(*CONTAINED, "passed") if barrier.is_pinned else CONTAINED,
+        outcomes=(*HELD, "passed") if barrier.is_pinned else HELD,
+        remark=_of_tipping,
     )
     effort = Effort(points, resolution, draws, executor, progress)
-    found = search_limit(simulation, question, masses, effort)
-    found.caution += _of_tipping(simulation, question, found.value, executor)
-    return found
+    return search_limit(simulation, question, masses, effort)
 
 
 @checked
@@ -327,7 +330,7 @@ def _of_tipping(simulation: Simulation, question: Question, value: float, execut
     study = run_study(
         simulation,
         (question.parameter, "impact_offset"),
-        [(question.of_value(value), offset) for offset in question.offsets(value)],
+        question.rows(value),
         metrics=[name],
         executor=executor,
         progress=False,
@@ -377,19 +380,26 @@ def _usual_offsets(
     if offsets is not None:
         listed = [si("offsets", offset, "length") for offset in offsets]
         _check_offsets("offsets", listed)
-        return lambda _: listed
-    if isinstance(barrier, Bollards) and barrier.count > 1:
-        return _along_row(barrier, OFFSET_SHARES, lambda _: barrier.spacing)
-    offset = simulation.scene.impact_offset
-    return lambda _: [offset]
+    elif isinstance(barrier, Bollards) and barrier.count > 1:
+        listed = [barrier.station() + share * barrier.spacing for share in OFFSET_SHARES]
+    else:
+        listed = [simulation.scene.impact_offset]
+    return partial(_at_any_value, listed)
 
 
-def _along_row(
-    row: Bollards, shares: Sequence[float], spacing: Callable[[float], float]
-) -> Callable[[float], Sequence[float]]:
-    """Return the offsets [m] at a value, from those over the spacing."""
-    _check_offsets("offset_shares", shares)
-    return lambda value: [row.station() + share * spacing(value) for share in shares]
+def _at_any_value(offsets: Sequence[float], _value: float) -> Sequence[float]:
+    """Return the same offsets [m] whatever the value."""
+    return offsets
+
+
+def _along_row(row: Bollards, shares: Sequence[float], gap: float) -> Sequence[float]:
+    """Return the offsets [m] at a clear gap [m], from those over the spacing."""
+    return [row.station() + share * (gap + row.diameter) for share in shares]
+
+
+def _with_mass(free: FreeStanding, length: float, mass: float) -> FreeStanding:
+    """Return free-standing segments of this length [m] and mass [kg]."""
+    return dataclasses.replace(free, density=None, mass_per_length=mass / length)
 
 
 def _check_offsets(name: str, offsets: Sequence[float]) -> None:

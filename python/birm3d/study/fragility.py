@@ -14,7 +14,7 @@ import numpy.typing as npt
 from .. import pictures
 from ..base.arguments import checked
 from ..base.intervals import wilson
-from ..result.event import CONTAINED
+from ..result.event import HELD
 from ..result.metrics import METRIC_UNITS
 from ..simulation.simulation import Simulation
 from ..unit_check import given
@@ -218,8 +218,8 @@ def _limits(exceeds: Mapping[str, float] | None) -> Sequence[str]:
 def _stopped(study: Study) -> npt.NDArray[np.bool_]:
     outcome = study["outcome"]
     turned = np.isfinite(study.metrics["time_of_zero_velocity"])
-    contained = np.isin(outcome, CONTAINED) | ((outcome == "rolled_over") & turned)
-    return np.asarray(contained, bool)
+    held = np.isin(outcome, HELD) & (turned | (outcome != "rolled_over"))
+    return np.asarray(held, bool)
 
 
 def _exceeded(study: Study, exceeds: Mapping[str, float]) -> npt.NDArray[np.bool_]:

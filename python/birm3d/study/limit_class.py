@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from ..simulation.simulation import Simulation
 from .distributions import check_count
+from .limit_question import Question
 from .predict import check_draws, drawn_parameters
 from .runner import run_study
 
@@ -39,10 +40,7 @@ def class_shares(
     simulation: Simulation,
     vehicles: Mapping[str, Sequence[float]],
     values: Sequence[float],
-    rows_of: Callable[[float], Sequence[tuple[Any, float]]],
-    parameter: str,
-    measure: str,
-    holds: Callable[[str, float], bool],
+    question: Question,
     executor: Any,
 ) -> dict[float, float]:
     """Return the share of the vehicles for which each value holds, up to the first that holds for all.
@@ -53,28 +51,32 @@ def class_shares(
         Parameter -> its value for each vehicle.
     values
         To try, the most daring one first; at most five are.
-    rows_of
-        Value -> what the parameter is then, and the impact offset, of each run.
-    parameter, measure
-        Of the scene, and the metric that has a limit.
-    holds
-        Whether an outcome and a measure are good.
+    question
+        Which runs a value has, and when it holds.
+    executor
+        See :func:`birm3d.study.runner.run_study`.
+
+    Raises
+    ------
+    StudyInterrupted
+        With the finished runs of the present value.
     """
     if not vehicles:
         return {}
     count = len(next(iter(vehicles.values())))
     shares: dict[float, float] = {}
+    measure = question.measure
     for value in values[:_MOST_VALUES]:
         runs = [
             (*(vehicles[name][j] for name in vehicles), given, offset)
             for j in range(count)
-            for given, offset in rows_of(value)
+            for given, offset in question.rows(value)
         ]
-        names = (*vehicles, parameter, "impact_offset")
+        names = (*vehicles, question.parameter, "impact_offset")
         study = run_study(simulation, names, runs, metrics=[measure], executor=executor, progress=False)
         measures = study[measure].tolist()
         good = [
-            not error and holds(outcome, float(one))
+            not error and question.holds(outcome, float(one))
             for error, outcome, one in zip(study.error, study.outcome, measures, strict=True)
         ]
         shares[value] = float(np.mean(np.reshape(good, (count, -1)).all(axis=1)))

@@ -8,18 +8,21 @@ be monotonic. Therefore the answer counts from the safe end of the range: all va
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from .. import pictures
 from ..base.frozen_mapping import FrozenMapping
+from ..base.plain_words import plain_words
+from ..base.text_table import aligned
 from ..result.event import outcome_words
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
 from .distributions import check_count
 from .limit_class import class_shares, drawn_vehicles
+from .limit_question import Question
 from .runner import StudyInterrupted, run_study
 from .table import Study
 
@@ -27,10 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-__all__ = ["CONTAINED", "Effort", "Limit", "NotInRangeError", "Question", "SearchRun", "search_limit"]
-
-CONTAINED = ("stopped", "redirected", "rolled_over")
-"""Outcomes of a vehicle that did not get past the barrier."""
+__all__ = ["Effort", "Limit", "NotInRangeError", "Question", "SearchRun", "search_limit"]
 
 
 class SearchRun(NamedTuple):
@@ -55,41 +55,6 @@ class SearchRun(NamedTuple):
     outcome: str
     measure: float
     holds: bool
-
-
-class Question(NamedTuple):
-    """What is searched, and by which runs."""
-
-    name: str  # as "clear gap"
-    argument: str  # that has the range, as "gaps"
-    unit: str  # "m" or "kg"
-    greatest: bool  # whether the greatest value is sought that holds, or the least
-    parameter: str  # of the scene, as "barrier.spacing"
-    of_value: Callable[[float], Any]  # value of the parameter
-    offsets: Callable[[float], Sequence[float]]  # impact offsets [m]
-    measure: str  # metric
-    most: float | None  # of the metric
-    caution: str  # what the model leaves out that bears on the answer
-    outcomes: tuple[str, ...] = CONTAINED  # that hold
-
-    @property
-    def quantity(self) -> str:
-        """What is searched, for texts with a unit."""
-        return {"m": "length", "kg": "mass"}[self.unit]
-
-    @property
-    def criterion(self) -> str:
-        """When a value holds, in words."""
-        rolled = ", or rolls over before it" if "rolled_over" in self.outcomes else ""
-        text = f"the vehicle is stopped or turned away{rolled}"
-        if "passed" in self.outcomes:
-            text += ", or passes its end"
-        return text if self.most is None else f"{text}, {self.measure.replace('_', ' ')} <= {self.most:g} m"
-
-    def holds(self, outcome: str, measure: float) -> bool:
-        """Whether a run with this outcome and measure did what it should."""
-        within = self.most is None or measure <= self.most  # a NaN is not
-        return within and outcome in self.outcomes
 
 
 class Effort(NamedTuple):
@@ -119,6 +84,8 @@ class Limit:
 
     Attributes
     ----------
+    question : Question
+        What was asked, see :mod:`birm3d.study.limit_question`.
     name : str
         What was searched, as ``"clear gap"``.
     unit : str
@@ -161,17 +128,51 @@ class Limit:
         study: Study,
         class_shares: Mapping[float, float] | None = None,
         draws: int = 0,
+        remark: str = "",
     ) -> None:
+        self.question, self._remark = question, remark
         self.class_shares, self.draws = FrozenMapping(dict(class_shares or {})), draws
-        self.name, self.unit = question.name, question.unit
-        self.greatest, self.criterion = question.greatest, question.criterion
-        self.measure, self.most, self.caution = question.measure, question.most, question.caution
         self.value, self.fails_at, self.resolution = value, fails_at, resolution
         self.runs, self.study = runs, study
         holds = _held(runs)
-        beyond = [v for v, held in holds.items() if held and (v > value if self.greatest else v < value)]
+        beyond = [v for v, held in holds.items() if held and (v > value if question.greatest else v < value)]
         self.exceptions = tuple(beyond)
         self.monotonic = not beyond
+
+    @property
+    def name(self) -> str:
+        """What was searched."""
+        return self.question.name
+
+    @property
+    def unit(self) -> str:
+        """Of the values."""
+        return self.question.unit
+
+    @property
+    def greatest(self) -> bool:
+        """Whether the greatest value was sought."""
+        return self.question.greatest
+
+    @property
+    def criterion(self) -> str:
+        """When a value holds."""
+        return self.question.criterion
+
+    @property
+    def measure(self) -> str:
+        """Metric that may have a limit."""
+        return self.question.measure
+
+    @property
+    def most(self) -> float | None:
+        """Its greatest value that holds; ``None``: any."""
+        return self.question.most
+
+    @property
+    def caution(self) -> str:
+        """What the model leaves out that bears on the answer."""
+        return self.question.caution + self._remark
 
     @property
     def at_bound(self) -> bool:
@@ -213,7 +214,7 @@ class Limit:
             "runs that hold",
             "worst offset [m]",
             "outcome",
-            f"{_words(self.measure)} [m]",
+            self.question.measure_label,
             "",
         )
         cells = [head]
@@ -229,9 +230,7 @@ class Limit:
                     "holds" if worst.holds else "fails",
                 )
             )
-        widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
-        rows = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in cells]
-        return "\n".join([self.headline, self.study.scene_title, *self.remarks, "", *rows])
+        return "\n".join([self.headline, self.study.scene_title, *self.remarks, "", *aligned(cells)])
 
     __str__ = summary
 
@@ -366,7 +365,9 @@ def search_limit(
     shares = _shares(simulation, question, vehicles, value, order, effort.executor)
     all_runs, joined = tuple(sorted(runs)), Study.joined(studies)
     draws = len(next(iter(vehicles.values()), ()))
-    return Limit(question, value, fails_at, resolution, all_runs, joined, shares, draws)
+    asked = question.remark
+    remark = "" if asked is None else asked(simulation, question, value, effort.executor)
+    return Limit(question, value, fails_at, resolution, all_runs, joined, shares, draws, remark)
 
 
 def _shares(
@@ -384,10 +385,7 @@ def _shares(
             simulation,
             vehicles,
             [value, *safer],
-            lambda one: [(question.of_value(one), offset) for offset in question.offsets(one)],
-            question.parameter,
-            question.measure,
-            question.holds,
+            question,
             executor,
         )
     except StudyInterrupted:
@@ -429,7 +427,9 @@ def _not_in_range(
     also = f"; {', '.join(others)} {question.unit} hold, which is not monotonic" if others else ""
     worst = next(run for run in runs if run.value == order[0] and not run.holds)
     where = f"{outcome_words(worst.outcome)} at offset {worst.impact_offset:.4g} m"
-    measured = "" if math.isnan(worst.measure) else f", {_words(question.measure)} {worst.measure:.3f} m"
+    measured = ""
+    if not math.isnan(worst.measure):
+        measured = f", {plain_words(question.measure)} {question.measured(worst.measure, '.3f')}"
     return NotInRangeError(
         f"{question.argument} must have a {end} value that holds ({question.criterion}), got "
         f"{order[0]:.6g} {question.unit}: {where}{measured}{also}",
@@ -447,7 +447,3 @@ def _range(question: Question, given: Sequence[Quantity]) -> tuple[float, float]
             f"got {shown}"
         )
     return float(limits[0]), float(limits[1])
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")

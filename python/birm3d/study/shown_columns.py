@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ..base.plain_words import plain_words
 from ..base.shown_numbers import plain_number, shown_unit
 from ..result.metric_table import METRICS
 from ..result.summary import shown_as
@@ -62,5 +63,5 @@ def parameter_words(name: str) -> str:
     """Return a parameter in words: ``barrier.spacing`` is ``"barrier: spacing"``."""
     if name in _WORDS:
         return _WORDS[name]
-    group, _, number = name.replace("_", " ").rpartition(".")
+    group, _, number = plain_words(name).rpartition(".")
     return f"{group.replace('.', ' ')}: {number}" if group else number

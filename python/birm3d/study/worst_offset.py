@@ -14,6 +14,7 @@ from ..barrier.kinds import Bollards
 from ..base.arguments import checked
 from ..base.checks import whole_number
 from ..base.shown_numbers import plain_number
+from ..base.text_table import aligned
 from ..result.event import outcome_words
 from ..result.metrics import METRIC_UNITS
 from ..simulation.parameters import varied
@@ -139,11 +140,11 @@ class WorstOffset:
             runs = len(row.search.grid) + len(row.search.refinement)
             place = (f"{row.spacing:.4g}", f"{row.offset:.3f}", f"{row.share:.2f}")
             cells.append((*place, plain_number(row.value / size), outcome_words(row.outcome), str(runs)))
-        widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
-        lines = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in cells]
         coarsest = max(self.resolution)
         rest = f"Scanned every {coarsest:.3g} m or finer, then refined: a narrower peak can be missed."
-        return "\n".join([f"Scene of the greatest value: {self.worst.search.grid.scene_title}", *lines, rest])
+        return "\n".join(
+            [f"Scene of the greatest value: {self.worst.search.grid.scene_title}", *aligned(cells), rest]
+        )
 
     __str__ = summary
 

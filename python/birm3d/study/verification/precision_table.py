@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from ...base.arguments import checked
 from ...base.frozen_mapping import FrozenMapping
+from ...base.plain_words import plain_words
 from ...result.metrics import METRIC_UNITS
 from ...scene.settings import Settings
 from .convergence import Limit
@@ -76,7 +77,7 @@ class PrecisionRow:
     @property
     def setting(self) -> str:
         """In words."""
-        name = self.kind.replace("_", " ")
+        name = plain_words(self.kind)
         return f"{name} {self.value:.3g}{' s' if self.kind == 'time_step' else ''}"
 
     @property
