@@ -12,6 +12,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCH, VALIDATION = ROOT / "tests/bench/results", ROOT / "tests/validation/results"
+ALL_TESTS = ROOT / "tests/validation/README.md"
 MARK = re.compile(r"^<!-- build: (table|text) (\w+) -->$", re.MULTILINE)
 Row = dict[str, str]
 _log = logging.getLogger("mkdocs.hooks.tables")
@@ -128,6 +129,81 @@ def finite_element() -> str:
             body.append((row["vehicle"], row["run"], crush, force))
     return table(
         ("vehicle", "run, left out", "crush [m], computed (run)", "peak force [kN], computed (run)"), body
+    )
+
+
+def by_kind() -> str:
+    """How many rows of each kind of test are within their marks."""
+    return "\n".join(_lines_by_kind())
+
+
+def _lines_by_kind() -> list[str]:
+    text = ALL_TESTS.read_text(encoding="utf-8").split("\n## By kind of test\n")[1].split("\n## ")[0]
+    return [line for line in text.splitlines() if line.startswith("|")]
+
+
+def counts_by_kind() -> dict[tuple[str, str, str], Row]:
+    """Return the rows of :func:`by_kind` by kind, quantity and role."""
+    head, _, *lines = ([cell.strip() for cell in line.split("|")[1:-1]] for line in _lines_by_kind())
+    found, kind = {}, ""
+    for cells in lines:
+        row = dict(zip(head, cells, strict=True))
+        kind = row["kind"] or kind
+        found[kind, row["quantity"], row["role"]] = row
+    return found
+
+
+# Rows of README.md: kind of test, the quantities that are counted together, and their role.
+TRUST = (
+    ("Full-width rigid wall, head-on", ("travel",), "predicted"),
+    ("Full-width rigid wall, head-on", ("static crush",), "predicted"),
+    ("Rigid pole into the side", ("static crush",), "predicted"),
+    (
+        "Finite-element vehicles N and S: walls, oblique walls, poles",
+        ("travel", "peak force CFC60", "yaw"),
+        "left out",
+    ),
+    ("Lateral design loads of rails", ("force over 50 ms",), "predicted"),
+    ("Trucks at bollards and walls, head-on", ("dynamic penetration",), "predicted"),
+)
+
+
+def trust() -> str:
+    """The table of README.md; a test compares it with that page."""
+    counts = counts_by_kind()
+    body = []
+    for kind, quantities, role in TRUST:
+        rows = [counts[kind, quantity, role] for quantity in quantities]
+        met, number = (sum(int(row[column]) for row in rows) for column in ("within the marks", "rows"))
+        errors = ", ".join(
+            f"{row['median error']} {row['unit of the error']}".replace("% of measured", "%") for row in rows
+        )
+        errors = f"median error{'s' if len(rows) > 1 else ''} {errors}"
+        body.append(
+            (f"{kind}: {', '.join(quantities)} ({role})", f"{met} of {number} within the marks; {errors}")
+        )
+    return table(("checked against", "result"), [*body, _greatest_error(), _same_bits()])
+
+
+def _greatest_error() -> tuple[str, str]:
+    rows = rows_of(BENCH / "accuracy/converged.csv")
+    cases = len({row["case"] for row in rows})
+    worst = max(rows, key=lambda row: float(row["default_error"] or 0.0))
+    name = worst["metric"].replace("_", " ")
+    checked = f"the program's own converged answers, {cases} cases at default settings"
+    return checked, f"greatest error of any metric {percent(worst['default_error'])} ({name})"
+
+
+def _same_bits() -> tuple[str, str]:
+    rows = rows_of(BENCH / "determinism/hashes.csv")
+    scenes, builds = ({row[column] for row in rows} for column in ("scene", "build"))
+    if len({(row["scene"], row["hash"]) for row in rows}) != len(scenes):
+        raise ValueError("hashes.csv must have one hash for each scene: README.md says so")
+    words = {7: "seven", 8: "eight"}
+    text = f"each of {words[len(scenes)]} scenes ends in the same state"
+    return (
+        "compilers, instruction sets, threads",
+        f"{text} in all {len(rows)} runs of {words[len(builds)]} builds",
     )
 
 
@@ -258,8 +334,8 @@ def _plain(text: str) -> str:
 MADE: dict[str, Callable[[], str]] = {
     made.__name__: made
     for made in (
-        accuracy_errors, accuracy_claims, mesh, rivals, determinism, blind, finite_element, robustness,
-        metrics, settings, barriers, tutorial_report, design_loads, parapet_loads, limits,
+        accuracy_errors, accuracy_claims, mesh, rivals, determinism, by_kind, blind, finite_element,
+        robustness, metrics, settings, barriers, tutorial_report, design_loads, parapet_loads, limits,
     )
 }  # fmt: skip
 

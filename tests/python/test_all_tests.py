@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import sys
 from pathlib import Path
 
@@ -43,6 +44,30 @@ def test_page_is_what_the_tables_say() -> None:
     tables = {name: read(name) for name in all_tests.KINDS}
     modules = {name: all_tests.kind(name) for name in all_tests.KINDS}
     assert (FOLDER / "README.md").read_text(encoding="utf-8") == page(modules, tables)
+
+
+def test_readme_has_rows_of_the_page() -> None:
+    """README.md of the package: at most eight rows, made of this page and of saved results."""
+    spec = importlib.util.spec_from_file_location("tables", TESTS.parent / "docs/build/tables.py")
+    assert spec is not None
+    assert spec.loader is not None
+    tables = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(tables)
+    readme = (TESTS.parent / "README.md").read_text(encoding="utf-8")
+    section = readme.split("\n## How far the numbers can be trusted\n")[1].split("\n## ")[0]
+    rows = [line for line in section.splitlines() if line.startswith("|")]
+    assert "\n".join(rows) == tables.trust(), "the table of README.md must be that of docs/build/tables.py"
+    assert len(rows) <= 2 + 8
+    names = {all_tests.kind(name).TITLE: name for name in all_tests.KINDS}
+    for kind, quantities, role in tables.TRUST:
+        for quantity in quantities:
+            name = names[kind]
+            judged = [r for r in read(name) if r.judged and r.quantity == quantity and r.role == role]
+            counted = tables.counts_by_kind()[kind, quantity, role]
+            assert (counted["rows"], counted["within the marks"]) == (
+                str(len(judged)),
+                str(sum(r.met for r in judged)),
+            )
 
 
 def test_every_kind_has_rows_of_all_its_tasks() -> None:
