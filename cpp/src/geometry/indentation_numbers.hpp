@@ -3,6 +3,11 @@
 
 namespace birm3d {
 
+// How far above the top of a post or a wall a deep indentation draws in the skin (m), no further than the panel overlaps it from
+// below. Bumpers and rails are 0.15 to 0.25 m high: what loads their lower edge loads them whole, and nothing as stiff ties
+// them to what is above. No test has measured it.
+inline constexpr double reach_above = 0.2;
+
 // One of the two faces of an edge, seen from a panel: its unit direction from the edge, by e and w. By `slope` it falls off from
 // the panel, for each unit of w.
 struct EdgeFace {

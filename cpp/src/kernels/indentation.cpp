@@ -33,10 +33,6 @@ constexpr double post_flank = 0.35, most_hold = 0.6;
 // passes the rounded corner of a front without load. Large: a post beside a bumper draws it in before anything is met.
 constexpr double least_outline_depth = 0.2;
 
-// How far above the top of a post or a wall a deep indentation draws in the skin (m). Bumpers and rails are 0.15 to 0.25 m high:
-// what loads their lower edge loads them whole, and nothing as stiff ties them to what is above. No test has measured it.
-constexpr double reach_above = 0.2;
-
 // `side`: 1 on the open side of an edge, -1 before its wall, 0 on the flank of a post. Before the wall the factor is zero: the
 // wall's face holds the skin there.
 double flank_factor(double side, double open_flank) {

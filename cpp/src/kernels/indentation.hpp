@@ -5,7 +5,8 @@
 // reaches to a depth f over the panel. A post that goes straight in draws the skin in to the depth D:
 //   D(w, l) = max of  f(w*, l*) - s |w - w*| - m s (l - l*)+
 // The maximum is over the places (w*, l*) of the post in front of the panel. Above the post's top the skin falls off more
-// steeply, by m = max(1, length / 0.2 m). So a deep indentation reaches 0.2 m up, the height of bumpers and rails. The
+// steeply, by m = max(1, length / 0.2 m) max(1, 0.2 m / o). So a deep indentation reaches 0.2 m up, the height of bumpers and
+// rails. It reaches up by no more than o, by which the panel overlaps the post from below. The
 // slope grows with the depth d of the post, s = sqrt(s0^2 + (d / length)^2): beams and panels carry a deep
 // indentation about as far to either side as a shallow one.
 //

@@ -39,6 +39,8 @@ struct NodePlace {
     Packet deepest;  // into, of the middle of the post there
     Packet
         overlap;  // height of the top above the panel's lower edge at the node; the panel meets the post where it is > 0
+    Packet
+        above;  // distance of the node beside the post that would draw it in as little as its height above the top
 };
 BIRM3D_INLINE NodePlace place_of(const IndentationNumbers& indentation, const PanelNodes& nodes,
                                  std::size_t i) {
@@ -55,6 +57,8 @@ BIRM3D_INLINE NodePlace place_of(const IndentationNumbers& indentation, const Pa
     const Packet lower_edge = place.l - indentation.upward * Packet::load(nodes.height_above_edge + i);
     place.overlap =
         indentation.top + indentation.top_slope * place.w - lower_edge + indentation.edge_allowance;
+    const Packet one = 1.0;
+    place.above = indentation.steeper * greater(one, reach_above / place.overlap) * (place.l - place.post_l);
     return place;
 }
 
@@ -63,7 +67,7 @@ BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& indentation, const N
     const Packet zero = 0.0, by_depth = (place.deepest - indentation.surface) * indentation.per_reach;
     const Packet slope = lesser(lesser(greater(by_depth, least_slope), steepest), flattest_face(indentation));
     const Packet beside = greater(greater(place.w - indentation.most_w, indentation.least_w - place.w), zero);
-    return place.e - (place.deepest - slope * (beside + indentation.steeper * (place.l - place.post_l)));
+    return place.e - (place.deepest - slope * (beside + place.above));
 }
 
 // The point of the post that each node of a packet follows.
@@ -85,7 +89,7 @@ BIRM3D_INLINE FollowedPlace follow_edge(const IndentationNumbers& indentation, c
     followed.w = place.w;
     followed.rise = {0.0, 0.0};
     followed.e = place.deepest;
-    followed.beyond = indentation.steeper * (place.l - place.post_l);
+    followed.beyond = place.above;
     followed.on_face = 0.0;
     followed.alone = 0.0;
     followed.gap = place.e - (followed.e - followed.slope.slope * followed.beyond);
@@ -115,7 +119,7 @@ BIRM3D_INLINE FollowedPlace find_followed(const IndentationNumbers& indentation,
     followed.rise = rise_at(indentation, followed.w);
     followed.e = indentation.tilt * place.post_l + followed.rise.rise;
     const Packet beside = where_above(place.w, followed.w, place.w - followed.w, followed.w - place.w);
-    followed.beyond = beside + indentation.steeper * (place.l - place.post_l);
+    followed.beyond = beside + place.above;
     const Packet other_side = where_above(place.w, zero, -1.0 * low, high);
     followed.on_face = where_above(free.slope, of_face, beside, zero);
     followed.alone = where_above(free.slope, of_face, beside - other_side, -1.0 * other_side);
