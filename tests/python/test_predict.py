@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Prediction, Simulation, Vehicle, units
 from birm3d.scene_parameters import value_of, varied
-from birm3d.study.predict import draws, quantiles
+from birm3d.study.predict import drawn_parameters, draws, quantiles
 
 CAR = Vehicle.preset("passenger_car", mesh_density=0.1)
 WALL = Simulation(CAR, Barrier.rigid_wall(), units.km_h(56.0))
@@ -191,3 +191,15 @@ def test_draws_that_do_not_touch_the_barrier_are_told() -> None:
     gap = birm3d.predict(Simulation(CAR, Barrier.bollards(count=2, spacing=4.0), 20.0), 8)
     assert "In 8 of 8 draws the vehicle does not touch the barrier." in gap.caution
     assert "does not touch" not in prediction().caution
+
+
+def test_a_front_that_was_set_is_in_the_middle_of_its_band() -> None:
+    """The class of the van has a median of 1.06: a calibrated front was drawn 6 % too stiff."""
+    van = Vehicle.preset("van_3500", mesh_density=0.1)
+    fitted = van.with_zone("engine", scale=1.3)
+    for vehicle, middle in ((van, 1.06), (van.scaled_to(3000.0), 1.06), (fitted, 1.0)):
+        scene = Simulation(vehicle, Barrier.rigid_wall(), 15.0)
+        drawn = drawn_parameters(scene, 5)["scatter.front"]
+        assert np.exp(np.log(drawn).mean()) == pytest.approx(middle, rel=1e-9)
+    found = birm3d.predict(Simulation(fitted, Barrier.rigid_wall(), 15.0, duration=0.1), 8)
+    assert "The law of engine was set by the user. Its band is centred on this vehicle" in found.caution

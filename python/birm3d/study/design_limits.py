@@ -24,10 +24,19 @@ from .limit_question import Question
 from .limit_search import Effort, Limit, search_limit
 from .runner import run_study
 
-__all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass", "least_tube_thickness"]
+__all__ = [
+    "OFFSET_SHARES",
+    "OFFSET_SHARES_YIELDING",
+    "greatest_gap",
+    "least_height",
+    "least_segment_mass",
+    "least_tube_thickness",
+]
 
 OFFSET_SHARES = (-0.25, 0.0, 0.25, 0.5)
 """Impact offsets over the spacing, from the middle of a row of posts: at a post, in a gap, and between."""
+OFFSET_SHARES_YIELDING = (-0.25, 0.0, 0.0625, 0.125, 0.1875, 0.25, 0.375, 0.5)
+"""The same of posts that yield: a vehicle may be held at both places and go over the posts between them."""
 
 _HEIGHTS, _ABOVE_BREAK, _INCH = (0.15, 1.3), 0.02, 0.0254  # m
 
@@ -64,7 +73,7 @@ def greatest_gap(
     gaps: Sequence[Quantity] = (0.5, 3.0),
     *,
     penetration: Quantity | None = None,
-    offset_shares: Sequence[float] = OFFSET_SHARES,
+    offset_shares: Sequence[float] | None = None,
     points: int = 11,
     resolution: Quantity | None = None,
     draws: int | None = None,
@@ -87,7 +96,8 @@ def greatest_gap(
     penetration
         Greatest ``vehicle_penetration`` [m] that is allowed as well; ``None``: any.
     offset_shares
-        Impact offsets over the spacing, counted from the row's middle.
+        Impact offsets over the spacing, counted from the row's middle. ``None``: :data:`OFFSET_SHARES`, of
+        posts that yield :data:`OFFSET_SHARES_YIELDING`.
     points
         Of the scan of the range, >= 2; a bisection follows.
     resolution
@@ -112,7 +122,8 @@ def greatest_gap(
     >>> found.value, found.fails_at, found.monotonic
     """
     row = _row(simulation)
-    _check_offsets("offset_shares", offset_shares)
+    shares = _shares_of(row) if offset_shares is None else tuple(offset_shares)
+    _check_offsets("offset_shares", shares)
     question = Question(
         name="clear gap",
         argument="gaps",
@@ -120,7 +131,7 @@ def greatest_gap(
         greatest=True,
         parameter="barrier.spacing",
         of_value=partial(add, row.diameter),
-        offsets=partial(_along_row, row, tuple(offset_shares)),
+        offsets=partial(_along_row, row, shares),
         measure="vehicle_penetration",
         most=_at_most("penetration", penetration),
         caution=_SKIN,
@@ -373,6 +384,10 @@ def _usual_heights(barrier: Barrier) -> tuple[float, float]:
     return low, high
 
 
+def _shares_of(row: Bollards) -> tuple[float, ...]:
+    return OFFSET_SHARES if row.yields() is None else OFFSET_SHARES_YIELDING
+
+
 def _usual_offsets(
     simulation: Simulation, barrier: Barrier, offsets: Sequence[Quantity] | None
 ) -> Callable[[float], Sequence[float]]:
@@ -381,7 +396,7 @@ def _usual_offsets(
         listed = [si("offsets", offset, "length") for offset in offsets]
         _check_offsets("offsets", listed)
     elif isinstance(barrier, Bollards) and barrier.count > 1:
-        listed = [barrier.station() + share * barrier.spacing for share in OFFSET_SHARES]
+        listed = [barrier.station() + share * barrier.spacing for share in _shares_of(barrier)]
     else:
         listed = [simulation.scene.impact_offset]
     return partial(_at_any_value, listed)

@@ -8,6 +8,7 @@ be monotonic. Therefore the answer counts from the safe end of the range: all va
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -18,6 +19,8 @@ from ..base.frozen_mapping import FrozenMapping
 from ..base.plain_words import plain_words
 from ..base.text_table import aligned
 from ..result.event import outcome_words
+from ..result.run_warnings import worst_doubts
+from ..simulation.parameters import varied
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
 from .distributions import check_count
@@ -365,9 +368,21 @@ def search_limit(
     shares = _shares(simulation, question, vehicles, value, order, effort.executor)
     all_runs, joined = tuple(sorted(runs)), Study.joined(studies)
     draws = len(next(iter(vehicles.values()), ()))
-    asked = question.remark
-    remark = "" if asked is None else asked(simulation, question, value, effort.executor)
+    remark = _doubts(simulation, question, value)
+    if question.remark is not None:
+        remark = question.remark(simulation, question, value, effort.executor) + remark
     return Limit(question, value, fails_at, resolution, all_runs, joined, shares, draws, remark)
+
+
+def _doubts(simulation: Simulation, question: Question, value: float) -> str:
+    """Return why the outcomes at a value can not be relied on, as sentences that go on from a caution."""
+    runs = (
+        varied(simulation, {question.parameter: question.of_value(value), "impact_offset": offset}).run()
+        for offset in question.offsets(value)
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the search has given them
+        return "".join(f" At {value:.6g} {question.unit}: {line}" for line in worst_doubts(runs))
 
 
 def _shares(

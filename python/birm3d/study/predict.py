@@ -21,6 +21,7 @@ from ..scene.text import scene_text
 from ..simulation.parameters import parameter_names, value_of
 from ..simulation.simulation import Simulation
 from ..vehicle.class_scatter import QUANTITIES, joined
+from ..vehicle.vehicle import Vehicle
 from .counted import counted, is_count
 from .runner import run_study
 from .table import Study
@@ -50,6 +51,11 @@ _UNTOUCHED = "In {n} of {all} draws the vehicle does not touch the barrier."
 _ACROSS = (
     "The overlap is small: of 150 tests at 25 % overlap, bands of the change of velocity across the vehicle "
     "hold 42 to 62 % from 100 ms on."
+)
+
+_SET = (
+    "The law of {zones} was set by the user. Its band is centred on this vehicle and as wide as that of the "
+    "class."
 )
 
 # What a quantity of the class is called among the scene's parameters; a factor on it, where it is no law's.
@@ -142,6 +148,9 @@ class Prediction:
             if struck:
                 told.append(_STRUCK.format(n=struck, all=len(self.study)))
         scene = self.study._scene
+        changed = () if scene is None else _changed_zones(scene.vehicle)
+        if changed:
+            told.append(_SET.format(zones=", ".join(changed)))
         if scene is not None and scene.barrier is not None and "peak_element_force" in metrics:
             untouched = int(np.count_nonzero(metrics["peak_element_force"] == 0.0))
             if untouched:
@@ -195,8 +204,9 @@ def predict(
     Drawn are forces of front, side and corner, height of the mass centre, friction and tyres. Each is
     lognormal, by the blocks ``[[scatter]]`` of the vehicle's file (:attr:`birm3d.Vehicle.scatter`). A median
     there may differ from 1, where the class differs from the vehicle that a preset was fitted to. Then the
-    median of a metric is not the value of the scene itself. Mass, speed, angle and barrier are those of the
-    scene.
+    median of a metric is not the value of the scene itself. Laws of zones that differ from the file, as those
+    of a calibrated vehicle, are known better than by their class: their median is 1. Mass, speed, angle and
+    barrier are those of the scene.
 
     The draws are the first n points of Sobol's sequence, one dimension for each quantity, whatever the scene.
     So two predictions differ by their scenes and not by chance (common random numbers).
@@ -289,6 +299,7 @@ def drawn_parameters(simulation: Simulation, power: int) -> dict[str, Floats]:
         )
     normal, known = draws(power), parameter_names(simulation)
     has_edges = getattr(simulation.scene.barrier, "rounding", 0.0) > 0.0
+    changed = frozenset(_changed_zones(vehicle))
     columns = {}
     for name, one in scatter.items():
         parameter = parameter_of(name)
@@ -296,5 +307,17 @@ def drawn_parameters(simulation: Simulation, power: int) -> dict[str, Floats]:
             continue  # no barrier, no trusses of such a zone, or no rounded edges
         present = value_of(simulation, parameter)
         if present > 0.0:
-            columns[parameter] = present * (one.median * np.exp(one.log_sd * normal[name]))
+            median = one.median if changed.isdisjoint(one.zones) else 1.0
+            columns[parameter] = present * (median * np.exp(one.log_sd * normal[name]))
     return columns
+
+
+def _changed_zones(vehicle: Vehicle) -> tuple[str, ...]:
+    """Return the zones whose laws differ from those of the vehicle's file."""
+    return tuple(
+        name
+        for unit in vehicle.units
+        if unit._file is not None
+        for name, law in unit.zones.items()
+        if law != unit._file.laws.get(name)
+    )
