@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from birm3d import Barrier, Result, Simulation, Vehicle, rate, units
-from tires import quick_to_steer
+from birm3d import Barrier, Result, Settings, Simulation, Vehicle, rate, units
+from tires import held_straight
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +40,7 @@ def test_a_car_that_turns_back_past_the_end_has_passed(sedan: Vehicle) -> None:
     """Rebounding at 0.55 s it was rated to stop within 0.3 m; it then rolled 7 m past the planter."""
     result = at_a_planter(sedan, None)
     assert result.outcome == "passed"
-    assert result.final_velocity[0] > 1.0
+    assert result.final_velocity[0] > 0.5
     rating = rate(result, "IWA 14-1")
     assert rating.designation == "no rating: the vehicle goes on past the barrier"
     assert not rating.contained
@@ -75,19 +75,19 @@ def test_the_sentence_says_which_unit_rolled_over() -> None:
 
 def test_an_undecided_run_of_the_longest_duration_asks_for_a_longer_one() -> None:
     """It asked for duration=None, which the run had."""
-    truck = quick_to_steer(Vehicle.preset("mash_10000s"))
-    result = Simulation(truck, Barrier.rigid_wall(height=0.35), units.km_h(90.0), 15.0).run()
-    assert result.end_reason == "longest"
+    truck = held_straight(Vehicle.preset("mash_10000s", mesh_density=0.3))
+    result = Simulation(truck, Barrier.rigid_wall(height=0.35), 25.0, 10.0).run()
+    assert (result.outcome, result.end_reason) == ("undecided", "longest")
     with pytest.raises(ValueError, match=r"\(a duration above 5 s\), got one that ends at 5 s"):
         rate(result, "MASH")
 
 
 @pytest.mark.parametrize(
     ("barrier", "offset"),
-    [(Barrier.rigid_wall(width=3.0, height=1.0), 1.8), (Barrier.planter(length=2.0), 1.3)],
+    [(Barrier.rigid_wall(width=3.0, height=1.0), 1.8), (Barrier.planter(length=2.0), 1.4)],
 )
 def test_a_car_that_rolls_on_past_an_end_has_passed(barrier: Barrier, offset: float) -> None:
-    """It moved at less than a tenth of its impact speed: it was "stopped", and rated by 0.2 m."""
+    """One that moved at less than a tenth of its impact speed was "stopped", and rated by 0.2 m."""
     sedan = Vehicle.preset("sedan_1500")
     whole = Simulation(sedan, barrier, 22.35, 90.0, offset).run()
     longer = Simulation(sedan, barrier, 22.35, 90.0, offset, duration=6.0).run()
@@ -102,7 +102,59 @@ def test_a_longer_run_does_not_know_less() -> None:
         Simulation(semi, planter, 20.65, 13.1, 1.54, duration=duration).run().outcome_detail
         for duration in (None, 5.0, 7.0)
     }
-    assert details == {"it was slower than a tenth of its impact speed when the run ended, at the barrier"}
+    assert len(details) == 1
+
+
+@pytest.mark.parametrize("offset", [0.51, 0.54, 0.6])
+def test_a_truck_that_creeps_beside_a_pole_is_followed_until_it_rests(offset: float) -> None:
+    """Without rolling resistance it was stopped after 5 s, and had passed after 10 s."""
+    truck = Vehicle.preset("mash_10000s")
+    whole, long = (
+        Simulation(truck, Barrier.pole(), 13.4, 90.0, offset, duration=duration).run()
+        for duration in (None, 20.0)
+    )
+    assert whole.outcome == long.outcome == "stopped"
+    for name in ("max_displacement", "vehicle_penetration"):
+        assert whole.metrics[name] == pytest.approx(long.metrics[name], abs=1e-3)
+
+
+@pytest.mark.parametrize("duration", [None, 8.0])
+@pytest.mark.parametrize(
+    ("name", "barrier", "speed", "angle", "offset"),
+    [
+        ("sedan_1500", Barrier.planter(length=2.0, width=1.0, height=0.9), 64.0, 75.0, 1.2),
+        ("sedan_1500", Barrier.bollards(count=9, spacing=1.2), 64.0, 20.0, 0.0),
+        ("small_car", Barrier.bollards(count=7, diameter=0.273, spacing=1.373), 64.0, 30.0, 0.0),
+        ("small_car", Barrier.bollards(count=9, diameter=0.273, spacing=1.373), 64.0, 30.0, 0.0),
+    ],
+)
+def test_a_car_that_is_thrown_back_has_not_passed_where_it_rolls_later(
+    name: str, barrier: Barrier, speed: float, angle: float, offset: float, duration: float | None
+) -> None:
+    """Unbraked, it rolls in a wide circle: past the end of the line, metres in front, it had passed."""
+    vehicle = Vehicle.preset(name)
+    result = Simulation(vehicle, barrier, units.km_h(speed), angle, offset, duration=duration).run()
+    assert result.metrics["exit_angle"] > 0.0
+    assert result.outcome in ("stopped", "redirected")
+
+
+def test_a_segment_that_has_turned_does_not_shift_the_line_beyond_it() -> None:
+    """Far beyond the chain's end, before the line, the vehicle counted as past the turned last segment."""
+    chain = Barrier.jersey(length=24.0, segments=4, free_standing=True)
+    pickup = Vehicle.preset("mash_2270p", mesh_density=0.3)
+    result = Simulation(pickup, chain, units.km_h(100.0), 25.0, 3.0).run()
+    assert result.position[-1, 1] > 12.0
+    assert result.position[:, 0].max() < 0.0
+    assert result.outcome == "redirected"
+
+
+@pytest.mark.parametrize("braking", [0.05, 0.3, 1.0])
+def test_a_truck_that_brakes_to_rest_before_a_wall_did_not_rebound(braking: float) -> None:
+    truck = Vehicle.preset("cargo_truck", mesh_density=0.3)
+    settings = Settings(braking=braking)
+    result = Simulation(truck, Barrier.rigid_wall(height=0.5), 5.0, standoff=40.0, settings=settings).run()
+    assert result.outcome_detail == "it came to rest before it reached the barrier"
+    assert not any("front's resistance" in line for line in result.report().splitlines())
 
 
 def test_posts_that_are_never_touched_do_not_change_the_word() -> None:

@@ -64,8 +64,8 @@ class TestNhtsa10146:
         change = np.concatenate([[0.0], np.cumsum(result.barrier_normal_force[1:] * dt)]) / 1719.0
         speed = result.scene.impact_speed - change
         way = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * dt)])
-        # The tyres' friction, left out here, is nil while the wheels roll straight.
-        assert way.max() == pytest.approx(result.metrics["max_displacement"], rel=1e-4)
+        # The tyres' rolling resistance, left out here, takes 0.01 m/s until then.
+        assert way.max() == pytest.approx(result.metrics["max_displacement"], rel=1e-3)
 
 
 # What a metric may differ from its own answer at fine steps beside 1 %: scalars that are nil but for rounding

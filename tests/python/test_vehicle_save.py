@@ -181,8 +181,10 @@ def test_export_for_the_core_holds_the_meshed_vehicle_exactly(tmp_path: Path) ->
     vehicle = several(Vehicle.preset("passenger_car", mesh_density=0.02))
     vehicle.export_core(tmp_path / "car.txt")
     words = (tmp_path / "car.txt").read_text(encoding="ascii").split()
-    assert words[:5] == ["birm3d-vehicle", "7", "units", "1", "mass"]
-    assert float.fromhex(words[5]) == vehicle.mass
+    assert words[:2] == ["birm3d-vehicle", "8"]
+    assert [float.fromhex(words[i]) for i in (3, 5)] == [10.0, 1.25]
+    assert words[2:9:2] == ["cornering_stiffness", "edge_flank_factor", "units", "mass"]
+    assert float.fromhex(words[9]) == vehicle.mass
     assert words[words.index("trusses") + 1] == str(vehicle.n_nodes)
     height = words[words.index("mass_center_height") + 1]
     assert float.fromhex(height) == vehicle.mass_center_height
@@ -194,7 +196,7 @@ def test_export_for_the_core_of_two_units_and_of_arrays(tmp_path: Path) -> None:
     semi = Vehicle.preset("semi_truck", mesh_density=0.02)
     semi.export_core(tmp_path / "semi.txt")
     words = (tmp_path / "semi.txt").read_text(encoding="ascii").split()
-    assert words[2:4] == ["units", "2"]
+    assert words[6:8] == ["units", "2"]
     joint = words.index("joints")
     assert words[joint + 1 : joint + 5] == ["1", "fifth_wheel", "0", "1"]
     block = Vehicle.from_arrays(

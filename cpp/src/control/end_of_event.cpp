@@ -115,8 +115,8 @@ std::vector<Box> boxes_of_barrier(const Scene& scene, const State& state, const 
 }
 
 // May a vehicle that moves away from all elements still come past an end of the barrier? It may where it skids beside an end, or
-// rolls on beside it towards the protected side, and is not past the barrier or clear of it yet.
-bool may_pass_an_end(const Scene& scene, const State& state) {
+// rolls on beside it towards the protected side, and is not past the barrier yet. If it was turned back, it must be near.
+bool may_pass_an_end(const Scene& scene, const State& state, bool turned_back) {
     if (!scene.settings.ground || scene.settings.gravity == 0.0 || scene.settings.mu_tire == 0.0)
         return false;
     const bool rolls_in = state.units.front().body.velocity.dot(scene.towards()) > tolerance::coasting_speed;
@@ -132,7 +132,7 @@ bool may_pass_an_end(const Scene& scene, const State& state) {
         past = past && place.x() > box.center.x();
         clear = clear && from_box(box, place).head<2>().norm() > margin;
     }
-    return !past && !clear;
+    return !past && !(turned_back && clear);
 }
 
 // Moving elements that friction can stop have stopped.
@@ -226,20 +226,20 @@ bool has_left(const Scene& scene, const State& state) {
     return true;
 }
 
-bool is_over(const Scene& scene, const State& state) {
-    return has_left(scene, state) && !tips(scene, state) && !may_pass_an_end(scene, state) &&
+bool is_over(const Scene& scene, const State& state, bool turned_back) {
+    return has_left(scene, state) && !tips(scene, state) && !may_pass_an_end(scene, state, turned_back) &&
            moving_elements_rest(scene, state);
 }
 
 double time_of_decision(const Scene& scene, std::span<const BodyState> before, double released, double dt,
-                        State& now) {
-    if (!is_over(scene, now)) return now.time;  // all came to rest
+                        bool turned_back, State& now) {
+    if (!is_over(scene, now, turned_back)) return now.time;  // all came to rest
     std::vector<BodyState> after;
     list_body_states(now, after);
     const auto is_over_at = [&](double fraction) {
         for (std::size_t b = 0; b < after.size(); ++b)
             body_state(now, b) = between(before[b], after[b], fraction);
-        return is_over(scene, now);
+        return is_over(scene, now, turned_back);
     };
     double open = released / dt, over = 1.0;
     if (is_over_at(open)) over = open;

@@ -3,8 +3,8 @@
 
 namespace birm3d {
 
-// How far above the top of a post or a wall a deep indentation draws in the skin (m), no further than the panel overlaps it from
-// below. Bumpers and rails are 0.15 to 0.25 m high: what loads their lower edge loads them whole, and nothing as stiff ties
+// How far above the top of a post or a wall a deep indentation draws in the skin (m). That is no further than the panel overlaps
+// it from below. Bumpers and rails are 0.15 to 0.25 m high: what loads their lower edge loads them whole, and nothing as stiff ties
 // them to what is above. No test has measured it.
 inline constexpr double reach_above = 0.2;
 

@@ -33,8 +33,7 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
     const double speed = std::hypot(body.velocity.x(), body.velocity.y());
     const double into = body.velocity.dot(event.towards);
     // What the barrier has turned back does not pass it, though its tyres may turn its path once more.
-    const bool turned_back = state.touched && event.released_velocity.dot(event.towards) < 0.0;
-    if (past > 0.0 || (into > parallel * speed && !turned_back)) {
+    if (past > 0.0 || (into > parallel * speed && !event.turned_back())) {
         if (event.over_top) {
             event.verdict = Verdict::overridden, event.manner = Manner::over;
             return;
@@ -60,12 +59,12 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
     event.manner = state.touched ? Manner::rebounds : Manner::rests_untouched;
 }
 
-// A vehicle that was stopped or redirected has passed if it comes past an end of the barrier afterwards, on a curved path, before
-// it is clear of the barrier. `at_end`: is the run over? Then a vehicle that moves towards the line has passed, too.
+// A vehicle that was stopped or redirected has passed if it comes past an end of the barrier afterwards, on a curved path. One
+// that was turned back is judged until it is clear. `at_end`: is the run over? Then what moves towards the line has passed.
 void revise(const Scene& scene, const State& state, bool at_end, Event& event) {
     if (!event.left || event.clear || event.touching || event.rolled_over() || runs_along_line(scene)) return;
     if (event.verdict != Verdict::stopped && event.verdict != Verdict::redirected) return;
-    event.clear = is_clear_of_barrier(scene, state, event);
+    event.clear = event.turned_back() && is_clear_of_barrier(scene, state, event);
     const Vec3& velocity = state.units.front().body.velocity;
     const bool moves = velocity.norm() > tolerance::coasting_speed;
     const bool nears =
@@ -140,7 +139,7 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
 }
 
 bool is_decided(const Scene& scene, const State& state, Event& event) {
-    const bool over = event.left && !event.touching && is_over(scene, state),
+    const bool over = event.left && !event.touching && is_over(scene, state, event.turned_back()),
                at_rest = rests(scene, state, event);
     if (over || at_rest) {
         if (!over && !event.decided()) judge_rest(scene, state, event);

@@ -97,6 +97,9 @@ double distance_past_line(const Scene& scene, const State& state, const Event& e
 bool stands_over_barrier(const Scene& scene, const State& state) {
     const BodyState& body = state.units.front().body;
     const TrussMesh& mesh = scene.vehicle->units.front().trusses;
+    // Around the rigid body and the mass centre, which lies before the frame of a tractor.
+    const Vec3 low = (mesh.anchors.center - mesh.anchors.half).cwiseMin(0.0),
+               high = (mesh.anchors.center + mesh.anchors.half).cwiseMax(0.0);
     std::vector<std::size_t> about;
     scene.map.find(body.position, mesh.reach, about);
     for (const std::size_t i : about) {
@@ -119,8 +122,8 @@ bool stands_over_barrier(const Scene& scene, const State& state) {
             if (std::hypot(from.x(), from.y()) < mesh.anchors.half.minCoeff()) return true;
             continue;
         }
-        const Vec3 local = body.orientation.conjugate() * from - mesh.anchors.center;
-        if (std::abs(local.x()) < mesh.anchors.half.x() && std::abs(local.y()) < mesh.anchors.half.y())
+        const Vec3 local = body.orientation.conjugate() * from;
+        if ((low.array() <= local.array()).head<2>().all() && (local.array() <= high.array()).head<2>().all())
             return true;
     }
     return false;

@@ -160,8 +160,8 @@ inline constexpr double stopped_share = 0.1;
 // that rolls past the end of a barrier is stopped. Small: runs end late.
 inline constexpr double coasting_speed = 0.25;
 
-// A vehicle that was stopped or redirected is clear of the barrier beyond this many times its own reach. Where it rolls then is
-// no matter of the barrier. Large: unbraked cars that roll in a wide circle have passed.
+// A vehicle that was turned back is clear of the barrier beyond this many times its own reach. Where it rolls then is no matter
+// of the barrier. Large: unbraked cars that roll in a wide circle have passed.
 inline constexpr double clear_of_barrier = 2.0;
 
 // The instant at which the outcome of a run is decided is found to within this (s).

@@ -66,6 +66,8 @@ struct Event {
     Verdict verdict = Verdict::undecided;  // the verdict without regard to rolling over, see outcome()
     Manner manner = Manner::no_barrier;
 
+    // Has the barrier turned the vehicle back, so that it moved away from the line as it lost contact?
+    bool turned_back() const { return released_velocity.dot(towards) < 0.0; }
     bool decided() const { return verdict != Verdict::undecided; }
     bool rolled_over() const { return upright && least_upright < 0.0; }
     Verdict outcome() const;
