@@ -98,11 +98,9 @@ def test_a_car_that_rolls_on_past_an_end_has_passed(barrier: Barrier, offset: fl
 def test_a_longer_run_does_not_know_less() -> None:
     """A truck that rolls back from a planter was stopped without a duration, and undecided with 5 s."""
     semi, planter = Vehicle.preset("semi_truck"), Barrier.planter(length=1.5, width=1.43, height=0.92)
-    details = {
-        Simulation(semi, planter, 20.65, 13.1, 1.54, duration=duration).run().outcome_detail
-        for duration in (None, 5.0, 7.0)
-    }
-    assert len(details) == 1
+    for duration in (None, 5.0, 7.0):
+        result = Simulation(semi, planter, 20.65, 13.1, 1.54, duration=duration).run()
+        assert result.outcome == "stopped"
 
 
 @pytest.mark.parametrize("offset", [0.51, 0.54, 0.6])

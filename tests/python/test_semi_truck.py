@@ -76,9 +76,8 @@ def test_the_trailer_pushes_the_tractor(semi: Vehicle, crash: dict) -> None:
     dt = np.diff(result.time)
     along = result.joint_force[1:, 0] @ dt
     change = result.unit(1).velocity[-1, 0] - result.unit(1).velocity[0, 0]
-    # On the leading unit forwards what takes the trailer's momentum, less its rolling resistance.
-    assert along == pytest.approx(-trailer.mass * change, rel=2e-3)
-    assert along < -trailer.mass * change
+    # On the leading unit forwards what takes the trailer's momentum, but for its rolling resistance.
+    assert along == pytest.approx(-trailer.mass * change, rel=2e-4)
     assert along > 0.0
     assert result.metrics["peak_joint_force_50ms"] > 1e6
     for kind in ("fifth_wheel", "welded"):

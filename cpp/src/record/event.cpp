@@ -162,7 +162,11 @@ bool rolls_on(const State& state, const Event& event) {
 
 void judge_at_longest(const Scene& scene, const State& state, Event& event) {
     revise(scene, state, true, event);
-    if (event.decided() || !state.touched || runs_along_line(scene)) return;
+    if (event.decided() || !scene.barrier || runs_along_line(scene)) return;
+    if (!state.touched) {
+        if (!rolls_on(state, event)) judge_rest(scene, state, event);
+        return;
+    }
     if (is_behind_element(scene, state, event)) {
         event.verdict = Verdict::overridden, event.manner = Manner::over;
         return;
