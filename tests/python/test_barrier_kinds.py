@@ -58,6 +58,10 @@ KINDS: dict[str, tuple[Barrier, Barrier]] = {
         Barrier.planter(length=1.5, width=0.8, height=0.9, heading=15.0),
         Barrier.planter(length=1.5, width=0.9, height=0.9, heading=15.0),
     ),
+    "planters": (
+        Barrier.planter(length=1.5, count=3, spacing=2.7),
+        Barrier.planter(length=1.5, count=3, spacing=2.8),
+    ),
     "mesh": (
         Barrier.from_mesh(WEDGE, SIDES, heading=10.0),
         Barrier.from_mesh(1.1 * WEDGE, SIDES, heading=10.0),
@@ -201,6 +205,27 @@ def test_a_planter_is_the_box_of_its_sizes(height: float, angle: float) -> None:
     assert planter.state_hash == wall.state_hash
     assert planter.velocity == pytest.approx(mesh.velocity, abs=1e-8)
     assert np.linalg.norm(planter.velocity[-1] - planter.velocity[0]) > 5.0
+
+
+@pytest.mark.parametrize("edge_radius", [None, 0.0, 0.5])
+def test_each_planter_of_a_row_is_met_as_if_it_stood_alone(edge_radius: float | None) -> None:
+    """Those beside it are out of reach, until the path leads between them."""
+    car, block = (
+        Vehicle.preset("passenger_car", mesh_density=0.2),
+        {"length": 1.5, "edge_radius": edge_radius},
+    )
+    row, alone = Barrier.planter(**block, count=3, spacing=4.0), Barrier.planter(**block)
+    for i, along in enumerate((-4.0, 0.0, 4.0)):
+        one, other = (
+            Simulation(car, barrier, 12.0, 90.0, offset, duration=0.15).run()
+            for barrier, offset in ((row, along + 0.3), (alone, 0.3))
+        )
+        assert one.velocity == pytest.approx(other.velocity, abs=1e-9)
+        touched = [load.name for load in one.element_loads if load.touched]
+        assert touched == [f"planter {i + 1}"]
+    wide = Barrier.planter(**block, count=2, spacing=4.5)
+    through = Simulation(car, wide, 12.0).run()
+    assert through.outcome_detail == "it passed between two elements of the barrier, untouched"
 
 
 def test_a_planter_is_met_where_it_stands() -> None:

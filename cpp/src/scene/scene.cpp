@@ -75,10 +75,16 @@ void add_to(Hash& hash, const Barrier& barrier) {
             hash.add(number);
 }
 
-// Can a segment of this shape continue the segment before it?
-bool continues(const Shape& shape) {
-    const auto* prism = std::get_if<Prism>(&shape);
-    return prism != nullptr && std::isfinite(prism->y_low()) && !prism->low_end_is_surface();
+// Does a segment continue the segment before it? Its low end is no surface, and stands at the other's high end.
+bool continues(const Obstacle& segment, const Obstacle& before) {
+    const auto *prism = std::get_if<Prism>(&segment.shape), *last = std::get_if<Prism>(&before.shape);
+    if (prism == nullptr || last == nullptr) return false;
+    if (!std::isfinite(prism->y_low()) || !std::isfinite(last->y_high()) || prism->low_end_is_surface())
+        return false;
+    const auto end = [](const Obstacle& one, double y) {
+        return Vec3(one.position + one.rotation * (y * Vec3::UnitY()));
+    };
+    return (end(segment, prism->y_low()) - end(before, last->y_high())).norm() < tolerance::abutting;
 }
 
 }  // namespace
@@ -103,7 +109,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     if (slides() && !settings.ground) refuse("ground", "True where the barrier is free-standing", "False");
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const auto& whole = barrier->elements[i].part_of;
-        const bool joined = i > 0 && moving_count() == 0 && continues(obstacles[i].shape);
+        const bool joined = i > 0 && moving_count() == 0 && continues(obstacles[i], obstacles[i - 1]);
         obstacles[i].structure = whole    ? obstacles[*whole].structure
                                  : joined ? obstacles[i - 1].structure
                                           : i;

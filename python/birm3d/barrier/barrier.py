@@ -277,11 +277,13 @@ class Barrier(BarrierKind):
         width: Quantity = 1.0,
         height: Quantity = 1.0,
         edge_radius: Quantity | None = None,
+        count: int = 1,
+        spacing: Quantity = 3.2,
         friction: float = 0.2,
         origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
         heading: Quantity = 0.0,
     ) -> Planter:
-        """Return a planter: a rigid, fixed, solid block; its middle along the line is at the origin.
+        """Return planters in a row: rigid, fixed, solid blocks; the row's middle is at the origin.
 
         Parameters
         ----------
@@ -294,6 +296,11 @@ class Barrier(BarrierKind):
         edge_radius
             Of the upright edges [m], at most half of length and width. ``None``: 0.05 m, or half of what is
             thinner. 0: sharp edges, which pass between nodes. They do not draw in skin, nor does the top.
+        count
+            Number of planters.
+        spacing
+            From the middle of one planter to that of the next [m], above the length. The clear gap is the
+            spacing less the length.
         friction, origin, heading
             See :class:`Barrier`.
 
@@ -308,6 +315,8 @@ class Barrier(BarrierKind):
             width=given("width", width),
             height=given("height", height),
             edge_radius=None if edge_radius is None else given("edge_radius", edge_radius),
+            count=count,
+            spacing=given("spacing", spacing),
         )
 
     @staticmethod

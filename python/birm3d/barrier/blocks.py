@@ -49,11 +49,13 @@ def along_line(
     abutting: bool = True,
     rounded: float = 0.0,
     draws_in_above: bool = False,
+    along: float = 0.0,
 ) -> list[_core.Element]:
     """Extrude a profile along the line. Abutting ends are no surface.
 
     At the ends of the line the profile is set back where rounded edges of that radius hide it [m].
-    ``draws_in_above``: skin above the top edge of its vertical face is drawn in.
+    ``draws_in_above``: skin above the top edge of its vertical face is drawn in. ``along``: place of the
+    middle [m].
     """
     ends = [-math.inf, math.inf] if math.isinf(length) else np.linspace(-0.5, 0.5, segments + 1) * length
     elements = []
@@ -68,7 +70,7 @@ def along_line(
                 y_high=high - (rounded if last else 0.0) - middle,
                 covered_low_end=rounded > 0.0 if first else abutting,
                 covered_high_end=rounded > 0.0 if last else abutting,
-                position=barrier.from_origin(across, middle),
+                position=barrier.from_origin(across, along + middle),
                 heading=math.radians(barrier.heading),
                 draws_in_above=draws_in_above,
             )
@@ -90,9 +92,12 @@ def rounded_block(
     segments: int = 1,
     *,
     draws_in_above: bool,
+    along: float = 0.0,
+    number: int = 0,
 ) -> list[_core.Element]:
     """Return a block along the line with rounded upright edges: its segments, then parts of the outer ones.
 
+    ``along``: place of its middle [m]. ``number``: of its first segment among the barrier's elements.
     The edges are posts, which draw in the skin beside them. Between those on the traffic's side stands the
     face, its ends hidden in the posts. Behind them is the block, with chords for the arcs that posts fill.
     """
@@ -107,7 +112,12 @@ def rounded_block(
             segments,
             rounded=radius,
             draws_in_above=draws_in_above,
+            along=along,
         )
+
+    def upright(corners: Floats, whole: int | None) -> _core.Element:
+        part_of = None if whole is None else number + whole
+        return _upright(barrier, corners, along, top, part_of)
 
     # Where the ends are round as a whole, an edge on the traffic's side is that behind it, too.
     rows = [(radius, 0.75)] if depth - 2.0 * radius < 1e-9 else [(radius, 0.75), (depth - radius, 0.25)]
@@ -115,9 +125,9 @@ def rounded_block(
         _core.Element.post(
             radius=radius,
             height=top,
-            position=barrier.from_origin(across, side * (half - radius)),
+            position=barrier.from_origin(across, along + side * (half - radius)),
             heading=math.radians(barrier.heading),
-            part_of=whole,
+            part_of=number + whole,
             opens=side * quarter * math.pi,
         )
         for across, quarter in rows
@@ -130,12 +140,12 @@ def rounded_block(
         return [
             *faces(depth),
             *edges,
-            _upright(barrier, cut_outline(plan, -1, -inner), top, 0),
-            _upright(barrier, cut_outline(plan, 1, inner), top, last),
+            upright(cut_outline(plan, -1, -inner), 0),
+            upright(cut_outline(plan, 1, inner), last),
         ]
     if half - radius > 1e-9:
-        return [*faces(depth - radius), *edges, _upright(barrier, plan, top, 0)]
-    return [_upright(barrier, plan, top, None), *edges]
+        return [*faces(depth - radius), *edges, upright(plan, 0)]
+    return [upright(plan, None), *edges]
 
 
 def _plan_behind(depth: float, length: float, radius: float) -> Floats:
@@ -149,15 +159,20 @@ def _plan_behind(depth: float, length: float, radius: float) -> Floats:
     return np.asarray(plan)
 
 
-def _upright(barrier: BarrierKind, plan: Floats, top: float, whole: int | None) -> _core.Element:
-    """Return a part of an element, drawn upwards from its plan: places across and along, (n, 2) [m]."""
+def _upright(
+    barrier: BarrierKind, plan: Floats, along: float, top: float, whole: int | None
+) -> _core.Element:
+    """Return a part of an element, drawn upwards from its plan: places across and along, (n, 2) [m].
+
+    ``along``: place of the middle of the block that it is of [m].
+    """
     return _core.Element.prism(
         profile=plan * (1.0, -1.0),  # own z points to lower y
         y_low=-FOOT,
         y_high=top,
         covered_low_end=True,
         covered_high_end=False,
-        position=barrier.from_origin(0.0, 0.0),
+        position=barrier.from_origin(0.0, along),
         heading=math.radians(barrier.heading),
         part_of=whole,
         upright=True,

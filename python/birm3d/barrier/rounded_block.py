@@ -85,25 +85,28 @@ class RoundedBlock(BarrierKind):
         depth, length, _ = self.plan
         return edges_text(self.rounding, depth, length / self.segments) if math.isfinite(length) else ""
 
-    def block_elements(self, top: float) -> list[_core.Element]:
-        """Return the elements of the block up to a height [m]."""
+    def block_elements(self, top: float, along: float = 0.0, number: int = 0) -> list[_core.Element]:
+        """Return the elements of the block up to a height [m]: its segments, then their parts.
+
+        ``along``: place of its middle [m]. ``number``: of its first segment among the barrier's elements.
+        """
         depth, length, _ = self.plan
+        draws_in = self.draws_in_above
         if self.rounding > 0.0:
-            return rounded_block(
-                self, depth, length, top, self.rounding, self.segments, draws_in_above=self.draws_in_above
-            )
-        return along_line(
-            self, block_profile(depth, top), 0.0, length, self.segments, draws_in_above=self.draws_in_above
-        )
+            sizes = (depth, length, top, self.rounding, self.segments)
+            return rounded_block(self, *sizes, draws_in_above=draws_in, along=along, number=number)
+        profile = block_profile(depth, top)
+        return along_line(self, profile, 0.0, length, self.segments, draws_in_above=draws_in, along=along)
 
     def outline(self) -> Floats:
         """Return the plan of the block with rounded edges: across and along of its corners, (n, 2) [m]."""
         depth, length, _ = self.plan
         return rounded_outline(depth, length, self.rounding)
 
-    def rounded_surfaces(self, height: float) -> list[Surface]:
-        """Return closed segments of a block with rounded edges."""
+    def rounded_surfaces(self, height: float, along: float = 0.0) -> list[Surface]:
+        """Return closed segments of a block with rounded edges; `along`: place of its middle [m]."""
         depth, length, _ = self.plan
-        plans = segment_outlines(depth, length, self.rounding, self.segments)
+        outlines = segment_outlines(depth, length, self.rounding, self.segments)
+        plans = [np.add(plan, (0.0, along)) for plan in outlines]
         drawn = [drawn_up(plan, 0.0, height) for plan in plans]
         return [(placed(self, vertices), faces) for vertices, faces in drawn]

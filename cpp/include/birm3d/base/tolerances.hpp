@@ -171,6 +171,9 @@ inline constexpr double decision_resolution = 1e-6;
 // followed. That ends once it has passed, coasts or touches again, at the latest at the second time.
 inline constexpr double longest_event = 5.0, longest_rolling = 30.0;
 
+// Segments abut whose ends are this near to each other (m): rounding of their places.
+inline constexpr double abutting = 1e-6;
+
 // A vehicle may start this far inside a surface (m): rounding of the initial placement only.
 inline constexpr double initial_overlap = 1e-9;
 
