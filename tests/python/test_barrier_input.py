@@ -31,6 +31,7 @@ SIZES: dict[str, dict[str, tuple[Any, ...]]] = {
         "row_offset": (NAN, INF),
     },
     "planter": {
+        "count": (0, -1, 1.5, NAN, INF),
         "length": (0.0, -1.0, NAN, INF),
         "width": (0.0, -1.0, NAN, INF),
         "height": (0.0, -1.0, NAN, INF),
