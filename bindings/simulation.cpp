@@ -149,7 +149,7 @@ void register_simulation(py::module_& m) {
                     {"ground_friction", balances.falls[Balances::ground_friction]},
                     {"impacts", balances.falls[Balances::impacts]},
                     {"barrier_ground_friction", balances.falls[Balances::segment_friction]},
-                    {"suspension", balances.falls[Balances::dampers]},
+                    {"dampers", balances.falls[Balances::dampers]},
                     {"sliding", balances.falls[Balances::sliding]},
                     {"yielding", balances.falls[Balances::yielding]}};
             },

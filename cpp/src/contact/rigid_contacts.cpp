@@ -183,6 +183,12 @@ double loss_of(const RigidContact& contact, std::span<const Twist> before, std::
     return -work;
 }
 
+double friction_loss(const Scene& scene, const State& state, const RigidContact& contact,
+                     std::span<const Twist> before, std::span<const Twist> after) {
+    return -power({contact.friction_impulse, contact.arm.cross(contact.friction_impulse)},
+                  relative_motion(scene, state, contact.body, contact.obstacle, before, after));
+}
+
 void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vector<Twist>& before,
                    const std::vector<Twist>& after, State& state) {
     const auto motion = [&](std::size_t u) { return mean(before[u], after[u]); };
@@ -199,9 +205,8 @@ void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vec
         const bool at_post = scene.tilts() && pushes_moving_element(contact);
         (at_post ? lost_at_posts : lost_in(contact, state.energies)) += loss;
         if (contact.source == ContactSource::core)
-            friction_of(scene, contact.obstacle, state.energies) -=
-                power({contact.friction_impulse, contact.arm.cross(contact.friction_impulse)},
-                      relative_motion(scene, state, contact.body, contact.obstacle, before, after));
+            friction_of(scene, contact.obstacle, state.energies) +=
+                friction_loss(scene, state, contact, before, after);
     }
     // Posts that their plastic moments hold against the rigid core push the core: that is a part of the moments' work. In an
     // impact, a single contact may gain what others lose.

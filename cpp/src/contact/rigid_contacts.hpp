@@ -40,6 +40,10 @@ void add_impulses(const Scene& scene, const State& state, const ContactKick& kic
 // Energy that the normal impulse of a contact takes from the bodies (J).
 double loss_of(const RigidContact& contact, std::span<const Twist> before, std::span<const Twist> after);
 
+// The same by its friction.
+double friction_loss(const Scene& scene, const State& state, const RigidContact& contact,
+                     std::span<const Twist> before, std::span<const Twist> after);
+
 // Adds the contacts' work to the energy balance. The work uses the mean of the velocities before and after, so that
 // the change of kinetic energy is exact. Joints have a term of their own. It contains only the error of the stepping
 // scheme.

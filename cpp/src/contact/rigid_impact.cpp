@@ -48,13 +48,6 @@ void set_impact_targets(double restitution, double reach, double fastest, std::s
     }
 }
 
-double kinetic_energy_of(const Scene& scene, const State& state) {
-    double sum = 0.0;
-    for (std::size_t body = 0; body < body_count(state); ++body)
-        sum += kinetic_energy(rigid_body(scene, body), body_state(state, body));
-    return sum;
-}
-
 // Stores state and energies beside an impact.
 void keep(const Scene& scene, const State& state, Impact& impact) {
     impact.happened = true;
@@ -134,8 +127,7 @@ class ImpactAttempts {
     }
 
     double loss_by_friction(const RigidContact& contact) const {
-        return -power({contact.friction_impulse, contact.arm.cross(contact.friction_impulse)},
-                      relative_motion(scene_, state_, contact.body, contact.obstacle, before_, after_));
+        return friction_loss(scene_, state_, contact, before_, after_);
     }
     double loss_by_tires(std::size_t u) const {
         return -power(memory_.kick.on_ground[u], mean(before_[u], after_[u]));

@@ -8,6 +8,7 @@
 #include "record/position_at_barrier.hpp"
 #include "record/rest.hpp"
 #include "record/sliding.hpp"
+#include "scene/bodies.hpp"
 
 namespace birm3d {
 
@@ -20,10 +21,8 @@ constexpr double parallel = 0.017452406;
 constexpr double still_along = 0.1;
 
 bool touches_barrier(const Scene& scene, const State& state) {
-    for (const UnitState& unit : state.units)
-        for (const ContactLoad& load : unit.contact_loads)
-            if (load.obstacle != scene.ground && load.normal_force > 0.0) return true;
-    return false;
+    return std::any_of(state.units.begin(), state.units.end(),
+                       [&](const UnitState& unit) { return skin_touches_barrier(scene, unit); });
 }
 
 // Gives the event of a vehicle that has left for good its verdict.

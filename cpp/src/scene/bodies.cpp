@@ -1,5 +1,6 @@
 #include "scene/bodies.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/integrate.hpp"
@@ -65,6 +66,19 @@ int body_of_obstacle(const Scene& scene, std::size_t obstacle) {
 double fastest_point(const MovingElement& element, const BodyState& body) {
     if (body.velocity.isZero(0.0) && body.angular_momentum.isZero(0.0)) return 0.0;
     return body.velocity.norm() + angular_velocity(element.body, body).norm() * element.reach;
+}
+
+double kinetic_energy_of(const Scene& scene, const State& state) {
+    double sum = 0.0;
+    for (std::size_t body = 0; body < body_count(state); ++body)
+        sum += kinetic_energy(rigid_body(scene, body), body_state(state, body));
+    return sum;
+}
+
+bool skin_touches_barrier(const Scene& scene, const UnitState& unit) {
+    return std::any_of(unit.contact_loads.begin(), unit.contact_loads.end(), [&](const ContactLoad& contact) {
+        return contact.obstacle != scene.ground && contact.normal_force > 0.0;
+    });
 }
 
 }  // namespace birm3d

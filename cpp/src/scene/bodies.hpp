@@ -37,4 +37,10 @@ double tilt_of(const BodyState& post);
 // Fastest any point of a moving element moves (m/s).
 double fastest_point(const MovingElement& element, const BodyState& body);
 
+// Of all bodies (J).
+double kinetic_energy_of(const Scene& scene, const State& state);
+
+// Does any node of the unit push on the barrier?
+bool skin_touches_barrier(const Scene& scene, const UnitState& unit);
+
 }  // namespace birm3d

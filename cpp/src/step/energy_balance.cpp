@@ -77,9 +77,7 @@ void sum_spring_energies(const Scene& scene, State& now) {
 }
 
 void sum_kinetic_energy(const Scene& scene, State& now) {
-    now.energies.kinetic = 0.0;
-    for (std::size_t body = 0; body < body_count(now); ++body)
-        now.energies.kinetic += kinetic_energy(rigid_body(scene, body), body_state(now, body));
+    now.energies.kinetic = kinetic_energy_of(scene, now);
 }
 
 void check_balances(const Scene& scene, const State& state, const Trial& trial, Balances& balances) {

@@ -7,6 +7,7 @@
 #include "kernels/steering.hpp"
 #include "kernels/suspension.hpp"
 #include "kernels/tires.hpp"
+#include "scene/bodies.hpp"
 #include "step/energy_balance.hpp"
 #include "step/error_estimates.hpp"
 #include "step/half_kick.hpp"
@@ -29,12 +30,6 @@ void note_drift_velocities(Trial& trial) {
     trial.drift_velocity_z.clear();
     for (const UnitState& unit : trial.state.units)
         trial.drift_velocity_z.push_back(unit.body.velocity.z());
-}
-
-bool skin_touches_barrier(const Scene& scene, const UnitState& unit) {
-    return std::any_of(unit.contact_loads.begin(), unit.contact_loads.end(), [&](const ContactLoad& contact) {
-        return contact.obstacle != scene.ground && contact.normal_force > 0.0;
-    });
 }
 
 // Drift, then detection (5.1), crush (5.3) and friction (5.4) at the end of the step.
