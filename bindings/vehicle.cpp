@@ -99,14 +99,14 @@ void register_vehicle(py::module_& m) {
                 const RigidBody body(mass, matrix(inertia, "inertia"));
                 std::vector<Wheel> discs_of_wheels = discs(wheels);
                 require_row_for_each(discs_of_wheels, breakaway, 2, "breakaway");
-                require_row_for_each(discs_of_wheels, suspension, 4, "suspension");
+                require_row_for_each(discs_of_wheels, suspension, 5, "suspension");
                 require_row_for_each(discs_of_wheels, tires, 4, "tires");
                 for (py::ssize_t i = 0; i < breakaway.shape(0); ++i) {
                     Wheel& wheel = discs_of_wheels[static_cast<std::size_t>(i)];
                     wheel.breakaway = breakaway.at(i, 0);
                     wheel.travel = breakaway.at(i, 1);
                     wheel.suspension = {suspension.at(i, 0), suspension.at(i, 1), suspension.at(i, 2),
-                                        suspension.at(i, 3)};
+                                        suspension.at(i, 3), suspension.at(i, 4)};
                     wheel.steering_time = tires.at(i, 0);
                     wheel.tread_radius = tires.at(i, 1);
                     wheel.camber_ratio = tires.at(i, 2);
@@ -121,8 +121,9 @@ void register_vehicle(py::module_& m) {
             "mass: kg. inertia: shape (3, 3), kg m^2. wheels: shape (w, 4), centre and radius, m.\n"
             "breakaway: shape (w, 2), load at which each wheel gives way, N, and how far it is then pushed "
             "up, m.\n"
-            "suspension: shape (w, 4), stiffness, N/m (0: fixed to the body), damping, N s/m, compression at "
-            "rest, m, travel from there to the bump stop, m.\n"
+            "suspension: shape (w, 5), stiffness, N/m (0: fixed to the body), damping, N s/m, compression at "
+            "rest, m, travel from there to the bump stop, m, stiffness against roll over that of springs at "
+            "the wheels.\n"
             "tires: shape (w, 4), time in which a wheel with free steering follows its direction of travel, "
             "s "
             "(inf: it does not steer), radius of the tread's cross-section, m, slip angle per tilt, rolling "

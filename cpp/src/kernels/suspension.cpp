@@ -9,19 +9,80 @@ bool has_springs(const Unit& unit) {
                        [](const Wheel& wheel) { return wheel.suspension.springs(); });
 }
 
+bool has_beam_axles(const Unit& unit) {
+    return std::any_of(unit.wheels.begin(), unit.wheels.end(),
+                       [](const Wheel& wheel) { return wheel.opposite != Wheel::none; });
+}
+
+namespace {
+
+// Of an extended wheel: from the mass centre to its lowest point, world axes (m), and how deep that is below the ground (m).
+struct Extended {
+    Vec3 arm;
+    double depth;
+};
+
+Extended extended(const Wheel& wheel, const BodyState& state, const Mat3& R) {
+    const Vec3 arm = lowest_point(wheel, R, -wheel.suspension.at_rest);
+    return {arm, -(state.position.z() + arm.z())};
+}
+
+// The wheel at the other end of the axle, if that still holds it; else null.
+const Wheel* opposite_of(const Unit& unit, std::size_t i, WheelSet given_way) {
+    const std::size_t other = unit.wheels[i].opposite;
+    return other == Wheel::none || has_wheel(given_way, other) ? nullptr : &unit.wheels[other];
+}
+
+double mean_of(double Suspension::* number, const Suspension& own, const Wheel& opposite) {
+    return 0.5 * (own.*number + opposite.suspension.*number);
+}
+
+// Stiffness times compression, or damping times its rate, at a loaded end of a beam axle.
+double at_end(double factor, double ratio, const AxleEnd& value, bool both_carry) {
+    if (!both_carry) return 2.0 * factor * ratio / (1.0 + ratio) * value.own;
+    const double mean = 0.5 * (value.own + value.other), half = 0.5 * (value.own - value.other);
+    return factor * (mean + ratio * half);
+}
+
+double energy_of_axle(double stiffness, double ratio, const AxleEnd& end) {
+    const bool own = end.carries(ratio), other = end.opposite().carries(ratio);
+    if (own && other) {
+        const double mean = 0.5 * (end.own + end.other), half = 0.5 * (end.own - end.other);
+        return stiffness * (mean * mean + ratio * half * half);
+    }
+    const double down = own ? end.own : other ? end.other : 0.0;
+    return stiffness * ratio / (1.0 + ratio) * down * down;
+}
+
+}  // namespace
+
 void find_suspension_loads(const Unit& unit, const BodyState& state, const Twist& motion, WheelSet given_way,
                            std::vector<SuspensionLoad>& loads) {
     loads.clear();
     const Mat3 R = state.orientation.toRotationMatrix();
+    const auto compression_rate = [&](const Vec3& arm) {
+        return -(motion.velocity + motion.angular_velocity.cross(arm)).z();
+    };
     for (std::size_t i = 0; i < unit.wheels.size(); ++i) {
         const Suspension& suspension = unit.wheels[i].suspension;
         if (!suspension.springs() || has_wheel(given_way, i)) continue;
-        const Vec3 arm = lowest_point(unit.wheels[i], R, -suspension.at_rest);
-        const double compression = -(state.position.z() + arm.z());
-        if (!(compression > 0.0)) continue;
-        const double rate = -(motion.velocity + motion.angular_velocity.cross(arm)).z();
-        const double spring = suspension.stiffness * compression;
-        loads.push_back({i, arm, spring, std::max(suspension.damping * rate, -spring)});
+        const Extended own = extended(unit.wheels[i], state, R);
+        double spring = 0.0, damper = 0.0;
+        if (const Wheel* opposite = opposite_of(unit, i, given_way)) {
+            const Extended other = extended(*opposite, state, R);
+            const AxleEnd end{own.depth, other.depth};
+            const double ratio = suspension.roll_ratio;
+            if (!end.carries(ratio)) continue;
+            const bool both = end.opposite().carries(ratio);
+            const AxleEnd rates{compression_rate(own.arm), compression_rate(other.arm)};
+            spring = at_end(mean_of(&Suspension::stiffness, suspension, *opposite), ratio, end, both);
+            damper = at_end(mean_of(&Suspension::damping, suspension, *opposite), ratio, rates, both);
+        } else {
+            if (!(own.depth > 0.0)) continue;
+            spring = suspension.stiffness * own.depth;
+            damper = suspension.damping * compression_rate(own.arm);
+        }
+        loads.push_back({i, own.arm, spring, std::max(damper, -spring)});
     }
 }
 
@@ -31,8 +92,17 @@ double spring_energy(const Unit& unit, const BodyState& state, WheelSet given_wa
     double sum = 0.0;
     for (std::size_t i = 0; i < unit.wheels.size(); ++i) {
         const Suspension& suspension = unit.wheels[i].suspension;
-        const double lowest = state.position.z() + lowest_point(unit.wheels[i], R, -suspension.at_rest).z();
-        const double compression = has_wheel(given_way, i) ? 0.0 : std::max(0.0, -lowest);
+        const double depth = extended(unit.wheels[i], state, R).depth;
+        const Wheel* opposite = has_wheel(given_way, i) ? nullptr : opposite_of(unit, i, given_way);
+        if (opposite != nullptr) {
+            // Half of the axle's energy stands for each of its ends.
+            const AxleEnd end{depth, extended(*opposite, state, R).depth};
+            const double stiffness = mean_of(&Suspension::stiffness, suspension, *opposite);
+            sum += 0.5 * energy_of_axle(stiffness, suspension.roll_ratio, end) -
+                   0.5 * suspension.stiffness * suspension.at_rest * suspension.at_rest;
+            continue;
+        }
+        const double compression = has_wheel(given_way, i) ? 0.0 : std::max(0.0, depth);
         sum += 0.5 * suspension.stiffness *
                (compression * compression - suspension.at_rest * suspension.at_rest);
     }

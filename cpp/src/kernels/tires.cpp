@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "birm3d/base/tolerances.hpp"
+#include "kernels/suspension.hpp"
 
 namespace birm3d {
 
@@ -160,9 +161,45 @@ Wrench slip_friction(const UnitOnTires& on, double steering_angle, std::span<con
 
 }  // namespace
 
+namespace {
+
+// The bump stops of a beam axle stand at its springs, see kernels/suspension.hpp. `first`: contacts of the unit's wheels, each
+// stopped where it stands.
+void move_stops_to_springs(const Unit& unit, const Mat3& R, WheelSet given_way,
+                           std::span<RigidContact> first) {
+    struct Stop {
+        Vec3 arm;
+        double gap;
+    };
+    std::vector<Stop> at_wheels;
+    for (const RigidContact& contact : first)
+        at_wheels.push_back({contact.arm, contact.gap});
+    for (std::size_t i = 0; i < unit.wheels.size(); ++i) {
+        const std::size_t j = unit.wheels[i].opposite;
+        if (j == Wheel::none || has_wheel(given_way, i) || has_wheel(given_way, j)) continue;
+        const Suspension& suspension = unit.wheels[i].suspension;
+        const double ratio = suspension.roll_ratio, inside = std::sqrt(ratio);
+        const double travel = (suspension.at_rest + suspension.bump) * R(2, 2);
+        const Stop &own = at_wheels[i], &other = at_wheels[j];
+        const AxleEnd end{travel - own.gap, travel - other.gap};
+        if (end.carries(ratio) && end.opposite().carries(ratio)) {
+            const double share = 0.5 * (1.0 + inside);
+            first[i].arm = share * own.arm + (1.0 - share) * other.arm;
+            first[i].gap = share * own.gap + (1.0 - share) * other.gap;
+        } else {
+            // The axle hangs on this end alone: its spring moves by this share of the wheel's travel.
+            const double share = inside * (1.0 + inside) / (1.0 + ratio);
+            first[i].gap = own.gap + travel * (1.0 / share - 1.0);
+        }
+    }
+}
+
+}  // namespace
+
 void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state, WheelSet given_way,
                         WheelAt at, std::vector<RigidContact>& contacts) {
     const Mat3 R = state.orientation.toRotationMatrix();
+    const std::size_t first = contacts.size();
     for (std::size_t i = 0; i < unit.wheels.size(); ++i) {
         RigidContact contact;
         contact.source = ContactSource::tire;
@@ -177,6 +214,8 @@ void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& sta
         contact.compliance = tolerance::tire_compliance;
         contacts.push_back(contact);
     }
+    if (at == WheelAt::bump_stop && has_beam_axles(unit))
+        move_stops_to_springs(unit, R, given_way, std::span(contacts).subspan(first));
 }
 
 WheelSet overloaded(const Unit& unit, double dt, std::span<const double> normal_impulses) {

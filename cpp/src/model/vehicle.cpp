@@ -39,6 +39,27 @@ RigidBody::RigidBody(double mass_, const Mat3& inertia_)
       inertia(checked_inertia(inertia_)),
       inverse_inertia(inertia.inverse()) {}
 
+namespace {
+
+// Notes the two ends of each beam axle: sprung wheels side by side whose springs stand inside of them.
+void find_axles(std::vector<Wheel>& wheels) {
+    constexpr double same_place = 1e-6;  // m
+    const auto on_axle = [](const Wheel& wheel) {
+        return wheel.suspension.springs() && wheel.suspension.roll_ratio < 1.0;
+    };
+    for (Wheel& wheel : wheels)
+        wheel.opposite = Wheel::none;
+    for (std::size_t i = 0; i < wheels.size(); ++i)
+        for (std::size_t j = i + 1; j < wheels.size(); ++j) {
+            const Vec3 &one = wheels[i].center, &other = wheels[j].center;
+            if (!on_axle(wheels[i]) || !on_axle(wheels[j]) || !(one.y() * other.y() < 0.0)) continue;
+            if (std::hypot(one.x() - other.x(), one.z() - other.z()) < same_place)
+                wheels[i].opposite = j, wheels[j].opposite = i;
+        }
+}
+
+}  // namespace
+
 // The list of wheels is a parameter by value for both constructors, so that callers may move theirs.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 Unit::Unit(const RigidBody& body_, const TrussInput& trusses_, std::vector<Wheel> wheels_,
@@ -73,6 +94,8 @@ Unit::Unit(const RigidBody& body_, TrussMesh trusses_, std::vector<Wheel> wheels
         require_at_least_zero("damping", "N s/m", wheels[i].suspension.damping);
         require_at_least_zero("compression at rest", "m", wheels[i].suspension.at_rest);
         require_at_least_zero("bump travel", "m", wheels[i].suspension.bump);
+        if (!(wheels[i].suspension.roll_ratio > 0.0 && wheels[i].suspension.roll_ratio <= 1.0))
+            refuse(name + " roll ratio", "> 0 and <= 1", wheels[i].suspension.roll_ratio);
         if (!(wheels[i].steering_time > 0.0))
             refuse(name + " steering time", "> 0 s", wheels[i].steering_time);
         if (!(wheels[i].tread_radius >= 0.0 && wheels[i].tread_radius <= wheels[i].radius))
@@ -86,6 +109,7 @@ Unit::Unit(const RigidBody& body_, TrussMesh trusses_, std::vector<Wheel> wheels
         if (height < -1e-3)
             refuse(name + " height of the lowest point above the ground", ">= -0.001 m", height);
     }
+    find_axles(wheels);
 }
 
 bool Unit::gives_way(const Vec3& anchor) const {

@@ -143,13 +143,14 @@ std::vector<Wheel> wheels_of(Reader& in, std::string_view name) {
         const double radius = in.number();
         const double breakaway = in.number(), travel = in.number();
         const double stiffness = in.number(), damping = in.number(), at_rest = in.number();
-        const double bump = in.number(), steering_time = in.number(), tread_radius = in.number();
+        const double bump = in.number(), roll_ratio = in.number(), steering_time = in.number(),
+                     tread_radius = in.number();
         const double camber_ratio = in.number();
         wheels.push_back({center,
                           radius,
                           breakaway,
                           travel,
-                          {stiffness, damping, at_rest, bump},
+                          {stiffness, damping, at_rest, bump, roll_ratio},
                           steering_time,
                           tread_radius,
                           camber_ratio,

@@ -25,6 +25,7 @@ void add_to(Hash& hash, const Wheel& wheel) {
     for (const double number :
          {suspension.stiffness, suspension.damping, suspension.at_rest, suspension.bump})
         hash.add(number);
+    if (suspension.roll_ratio < 1.0) hash.add(suspension.roll_ratio);
 }
 
 void add_to(Hash& hash, const HalfSpace& plane) {

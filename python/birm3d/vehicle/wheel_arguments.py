@@ -24,7 +24,7 @@ __all__ = ["PLAIN", "breakaway", "load_on_joint", "suspension", "tires", "wheel_
 Floats = npt.NDArray[np.float64]
 
 _HOLDS = (np.inf, 0.0)
-_FIXED = (0.0, 0.0, 0.0, 0.0)
+_FIXED = (0.0, 0.0, 0.0, 0.0, 1.0)
 _PLAIN_TIRE = (np.inf, 0.0, 0.0, 0.0)
 PLAIN = (*_HOLDS, *_FIXED, *_PLAIN_TIRE)
 """Numbers of a wheel of which a file says nothing, in the order breakaway(), suspension(), tires()."""
@@ -42,10 +42,10 @@ def breakaway(vehicle: VehicleFields) -> Floats:
 
 
 def suspension(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None) -> Floats:
-    """Return spring, damper and bump stop of each wheel (w, 4), by its zone.
+    """Return spring, damper and bump stop of each wheel (w, 5), by its zone.
 
     Stiffness [N/m], 0 of a wheel that is fixed to the body; damping [N s/m]; compression at rest, and travel
-    from there to the bump stop [m]. joint: as in :func:`wheel_loads`.
+    from there to the bump stop [m]; roll stiffness ratio. joint: as in :func:`wheel_loads`.
     """
     rows = _row_for_each_wheel(vehicle, _FIXED)
     loads: Floats | None = None
@@ -58,7 +58,8 @@ def suspension(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None
         loads = wheel_loads(vehicle, joint) if loads is None else loads
         stiffness = loads[wheel] / deflection
         damping = 2.0 * zone.damping_ratio * loads[wheel] / np.sqrt(units.g(deflection))
-        rows[wheel] = stiffness, damping, deflection, zone.bump_travel
+        ratio = zone.roll_stiffness_ratio or 1.0
+        rows[wheel] = stiffness, damping, deflection, zone.bump_travel, ratio
     return rows
 
 

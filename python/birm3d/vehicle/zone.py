@@ -41,7 +41,7 @@ class LawNumber(NamedTuple):
     """
 
     quantity: str
-    limit: Literal["> 0", ">= 0", "in [0, 1]"]
+    limit: Literal["> 0", ">= 0", "in [0, 1]", "in (0, 1]"]
     words: str
     optional: bool = True
     of_wheel: bool = False
@@ -63,6 +63,7 @@ LAW_NUMBERS: Mapping[str, LawNumber] = {
     "static_deflection": LawNumber("length", "> 0", "springs under the weight", of_wheel=True),
     "damping_ratio": LawNumber("number", "in [0, 1]", "damping ratio", of_wheel=True),
     "bump_travel": LawNumber("length", "> 0", "to the bump stop", of_wheel=True),
+    "roll_stiffness_ratio": LawNumber("number", "in (0, 1]", "roll stiffness ratio", of_wheel=True),
     "cornering_stiffness": LawNumber("number", "> 0", "cornering stiffness", of_wheel=True),
     "steering_time": LawNumber("time", "> 0", "free steering follows in", of_wheel=True),
     "tread_radius": LawNumber("length", "> 0", "tread rounded by", of_wheel=True),
@@ -123,6 +124,9 @@ class Zone(Mapping[str, Any]):
         Of a zone of tyres: compression of the springs under the vehicle's weight [m], and damping over
         critical damping. The third is the travel of the wheel from rest to the rigid bump stop [m]. The
         wheel's own mass is neglected. ``None``: wheels are fixed to the body.
+    roll_stiffness_ratio
+        Of a zone of sprung tyres on beam axles: stiffness of an axle against roll over that of the same springs
+        at its wheels [-], at most 1. Springs stand inside of the wheels. ``None``: 1.
     cornering_stiffness
         Of a zone of tyres: lateral force on the road per normal load and radian of slip, at small slip
         [1/rad]. ``None``: that of a car's tyres, see :attr:`birm3d.simulation.Scene.cornering_stiffness`.
@@ -155,6 +159,7 @@ class Zone(Mapping[str, Any]):
     static_deflection: float | None = None
     damping_ratio: float | None = None
     bump_travel: float | None = None
+    roll_stiffness_ratio: float | None = None
     cornering_stiffness: float | None = None
     steering_time: float | None = None
     tread_radius: float | None = None
@@ -198,6 +203,11 @@ class Zone(Mapping[str, Any]):
         ):
             if getattr(self, name) is not None:
                 positive(name, getattr(self, name))
+        ratio = self.roll_stiffness_ratio
+        if ratio is not None and not 0.0 < ratio <= 1.0:
+            raise ValueError(f"roll_stiffness_ratio must be > 0 and <= 1, got {ratio}")
+        if ratio is not None and self.static_deflection is None:
+            raise ValueError("static_deflection must be given beside roll_stiffness_ratio, got None")
         if self.damping_ratio is not None and not 0.0 <= self.damping_ratio <= 1.0:
             raise ValueError(f"damping_ratio must be in [0, 1], got {self.damping_ratio}")
 

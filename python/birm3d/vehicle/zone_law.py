@@ -25,7 +25,12 @@ _SUFFIX = {
     "time": "_s",
     "number": "",
 }
-_LIMITS = {"> 0": Field(gt=0.0), ">= 0": Field(ge=0.0), "in [0, 1]": Field(ge=0.0, le=1.0)}
+_LIMITS = {
+    "> 0": Field(gt=0.0),
+    ">= 0": Field(ge=0.0),
+    "in [0, 1]": Field(ge=0.0, le=1.0),
+    "in (0, 1]": Field(gt=0.0, le=1.0),
+}
 
 
 def _fields() -> Iterator[tuple[str, str, Any]]:

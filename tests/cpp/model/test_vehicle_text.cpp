@@ -22,6 +22,7 @@ const std::string block =
     "offset 0x0p+0 0x0p+0 0x0p+0\n"
     "wheels 1\n"
     "0x1p+0 -0x1p-1 -0x1.999999999999ap-3 0x1.3333333333333p-2 0x1p+13 0x1p-1 0x1p+16 0x1p+11 0x1p-3 0x1p-4 "
+    "0x1p-1 "
     "0x1p-5 0x1p-6 0x1p-7 0x1p-8\n"
     "boxes 0\n"
     "mesh_origin 0x1p+0 0x0p+0 0x0p+0\n"
@@ -67,7 +68,7 @@ TEST("numbers are read to the bit") {
     CHECK(unit.wheels[0].breakaway == 8192.0 && unit.wheels[0].travel == 0.5);
     const Suspension& suspension = unit.wheels[0].suspension;
     CHECK(suspension.stiffness == 65536.0 && suspension.damping == 2048.0);
-    CHECK(suspension.at_rest == 0.125 && suspension.bump == 0.0625);
+    CHECK(suspension.at_rest == 0.125 && suspension.bump == 0.0625 && suspension.roll_ratio == 0.5);
     CHECK(unit.wheels[0].steering_time == 0.03125 && unit.wheels[0].tread_radius == 0.015625);
     CHECK(unit.wheels[0].camber_ratio == 0.0078125 && unit.wheels[0].rolling_resistance == 0.00390625);
     CHECK(unit.trusses.friction_share[0][1] == 0.25);

@@ -14,7 +14,7 @@
 //     mass_center_height h        above the ground at rest
 //     offset x y z                of the mass centre from the vehicle's reference point; z is 0
 //     wheels n                    rows: centre (3), radius, breakaway load (N), travel, stiffness (N/m), damping (N s/m),
-//                                 compression at rest, bump travel, steering time (s), tread radius, camber ratio, rolling
+//                                 compression at rest, bump travel, roll ratio, steering time (s), tread radius, camber ratio, rolling
 //                                 resistance per load; body axes
 //     boxes n                     rows: centre (3), half edges (3) of the rigid body's boxes; body axes
 //     mesh_origin x y z           of the body axes, in the axes of the mesh

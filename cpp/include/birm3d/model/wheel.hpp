@@ -1,6 +1,7 @@
 // A wheel of a unit.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "birm3d/base/types.hpp"
@@ -13,6 +14,8 @@ struct Suspension {
     double damping = 0.0;    // N s/m
     double at_rest = 0.0;    // compression under the weight (m)
     double bump = 0.0;       // from there to the bump stop, which is rigid (m)
+    // Stiffness of a beam axle against roll, over that of its springs at the wheels: they stand further inside. 1: no axle.
+    double roll_ratio = 1.0;
 
     bool springs() const { return stiffness > 0.0; }
 };
@@ -33,6 +36,8 @@ struct Wheel {
     // Slip angle that has the same side force, per tilt: a tilted wheel rolls on a curve towards the side it leans to.
     double camber_ratio = 0.0;
     double rolling_resistance = 0.0;  // of a wheel that rolls, per load
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
+    std::size_t opposite = none;  // index of the wheel at the other end of its beam axle; set by its unit
 
     bool steers() const { return steering_time < infinity; }
 };
