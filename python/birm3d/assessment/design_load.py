@@ -87,6 +87,12 @@ def design_load(
     times the dynamic load factor. Above, it is the resistance R of the elastic-plastic system for which
     max|u| = ductility R / (m w^2). See :mod:`birm3d.assessment.oscillator`.
 
+    Of a post that yields in the run it is that of statics: the moment that tube or foundation resists, over
+    the height of the 50-ms force above the point about which the post turns. That is the capacity design of foundations, as in
+    EN 1998-1, 4.4.2.6, without its factor for overstrength. The run has spent the yielding already, so that
+    natural period and ductility do not change this force. It is at most twice the peak force, as no single
+    pulse has a greater dynamic load factor.
+
     Parameters
     ----------
     cases
@@ -95,9 +101,10 @@ def design_load(
         with as many draws as it has.
     natural_period
         Of an element on its foundation [s]; at least 4 output intervals. ``None``: 0.1 s is assumed, and the
-        caution says so.
+        caution says so. It has no effect on posts that yield.
     ductility
-        Displacement over yield displacement that the element may reach, 1 (elastic) to 100.
+        Displacement over yield displacement that the element may reach, 1 (elastic) to 100; without effect on
+        posts that yield.
     damping
         Ratio to the critical one, >= 0 and < 1.
     offsets, impact_angles, impact_speeds
@@ -223,7 +230,13 @@ def _rows_of(result: Result, normal: Floats, system: System) -> list[ElementDesi
     separation = result.metrics.get("time_of_separation", math.inf)
     barrier = result.scene.barrier
     weaker = barrier.weaker if isinstance(barrier, Bollards) else None
-    return [element_design(load, normal, system, separation, weaker) for load in result.element_loads]
+    yielded = np.zeros(len(result.element_loads), bool)
+    tilt = result.post_tilt
+    yielded[: tilt.shape[1]] = (tilt > 0.0).any(axis=0)
+    return [
+        element_design(load, normal, system, separation, weaker, bool(has))
+        for load, has in zip(result.element_loads, yielded, strict=True)
+    ]
 
 
 def _rows_and_blow(result: Result, normal: Floats, system: System) -> Seen:

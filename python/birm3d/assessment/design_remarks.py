@@ -29,6 +29,12 @@ _ADDED = (
 )
 
 
+_STATICS = (
+    "Where a post yields, natural period and ductility do not change the equivalent static force: the run "
+    "has spent the yielding already."
+)
+_LOWEST = "Of several scenes, that force comes from the one with the shortest arm."
+
 _LOWER_SPEEDS = (
     "A lower speed can load a post more: engine zones of light vehicles soften beyond 0.45 m of crush. Force "
     "and moment over 50 ms were up to 17 % greater at two thirds of the speed: list impact_speeds."
@@ -53,7 +59,11 @@ def design_cautions(
         Rows and cautions of all runs that are finished.
     """
     yield from barrier_caution(plan.barrier)
-    if plan.period_is_assumed:
+    if any(row.has_yielded for row in load.rows):
+        yield _STATICS
+        if len(load.scenes) > 1:
+            yield _LOWEST
+    if plan.period_is_assumed and not all(row.has_yielded for row in load.rows if row.touched):
         yield ASSUMED
         yield from _of_other_periods(load)
     yield from merged(of_runs)
@@ -88,10 +98,10 @@ def greatest_of_periods(load: DesignLoad) -> tuple[float, float] | None:
     """Return the greatest equivalent static force of the governing element [N], and its period [s].
 
     Over a third to three times the period that is assumed where none is given; ``None`` of one that nothing
-    touches, or where the rows are too far apart.
+    touches or that yields, or where the rows are too far apart.
     """
     row = load.governing
-    if row.load is None or _PERIODS[0] < LEAST_INTERVALS * row.load.interval:
+    if row.has_yielded or row.load is None or _PERIODS[0] < LEAST_INTERVALS * row.load.interval:
         return None
     periods = np.geomspace(*_PERIODS, _POINTS)
     forces = load.spectrum(periods)

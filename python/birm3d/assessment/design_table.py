@@ -18,8 +18,15 @@ from ..base.frozen_mapping import FrozenMapping
 from ..io.atomic_write import whole_file
 from ..scene.scene import Scene
 from .criteria import table_html, table_text, without_sign_of_zero
-from .element_design import BANDED, ENVELOPED, ElementDesign, System, check_system, design_direction
-from .oscillator import resistance
+from .element_design import (
+    BANDED,
+    ENVELOPED,
+    ElementDesign,
+    System,
+    check_system,
+    design_direction,
+    static_force,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -181,7 +188,7 @@ class DesignLoad:
 
     @property
     def equivalent_static_force(self) -> Floats:
-        """For the natural period, ductility and damping [N]."""
+        """For the natural period, ductility and damping, or of posts that yield by statics [N]."""
         return self._column("equivalent_static_force")
 
     @property
@@ -212,7 +219,7 @@ class DesignLoad:
             "moment: greatest 50-ms means; height is that of the 50-ms force above the element's foot, where "
             "the moment is taken; direction that from the barrier's normal. Equivalent static force, at this "
             f"height and in this direction: system with one degree of freedom, {kind}, natural period "
-            f"{self.natural_period:g} s{damped}, unfiltered load.{band}"
+            f"{self.natural_period:g} s{damped}, unfiltered load.{_of_yielding(self.rows)}{band}"
         )
 
     def _head(self) -> tuple[str, ...]:
@@ -267,7 +274,8 @@ class DesignLoad:
     ) -> Floats:
         """Return the equivalent static force of an element at other natural periods, shape (n,) [N].
 
-        The load is that of the scene which governs at the period of the table.
+        The load is that of the scene which governs at the period of the table. Of a post that yields there
+        the force is the same at all periods.
 
         Parameters
         ----------
@@ -290,9 +298,14 @@ class DesignLoad:
         system = System(self.natural_period, self.ductility if ductility is None else ductility, self.damping)
         for period in wanted.tolist():
             check_system(system._replace(natural_period=period), row.load.interval, "periods")
-        load = row.load.force[1:] @ design_direction(row.load, self.normal)
+        if row.has_yielded:
+            return np.full(len(wanted), row.equivalent_static_force)
+        direction = design_direction(row.load, self.normal)
         return np.array(
-            [resistance(load, row.load.interval, period, *system[1:]) for period in wanted.tolist()]
+            [
+                static_force(row.load, direction, system._replace(natural_period=period), row.yield_force)
+                for period in wanted.tolist()
+            ]
         )
 
     def to_dataframe(self) -> pd.DataFrame:
@@ -389,6 +402,13 @@ _UNITS = {
     "moment": "N m",
 }
 _UNITS |= {f"{name}_{end}": _UNITS[name] for name in BANDED if name in _UNITS for end in ("low", "high")}
+
+
+def _of_yielding(rows: tuple[ElementDesign, ...]) -> str:
+    """Return how the static force of posts that have yielded is made; "" where there is none."""
+    if not any(row.has_yielded for row in rows):
+        return ""
+    return " Where a post yields it is the moment that the post resists over the arm of the 50-ms force."
 
 
 def _kilo(value: float) -> str:

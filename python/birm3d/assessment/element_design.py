@@ -32,6 +32,7 @@ __all__ = [
     "envelope",
     "lateral_level",
     "peak_filter",
+    "static_force",
 ]
 
 Floats = npt.NDArray[np.float64]
@@ -45,6 +46,7 @@ BANDED = (*ENVELOPED, "height", "direction", "dynamic_load_factor")
 _CLASS = 60.0
 _MOST_DUCTILITY = 100.0
 _WINDOW = 0.05  # s
+_MOST_OF_ONE_PULSE = 2.0  # no single pulse has a greater dynamic load factor
 
 
 class System(NamedTuple):
@@ -86,8 +88,14 @@ class ElementDesign:
         Greatest 50-ms mean of the overturning moment about the foot, at ground level [N m].
     equivalent_static_force : float
         Static force that asks as much of a system of the given period, ductility and damping as the
-        unfiltered load along ``direction`` [N]; it acts at ``height``. Of a post that yields the load counts
-        up to what its plastic moment stands at ``height``: more of it accelerates the post.
+        unfiltered load along ``direction`` [N]; it acts at ``height``. Of a post that has yielded it is
+        ``yield_force``, or twice ``peak_force`` if that is less. Of one that could yield and has not, the
+        system is elastic, and the force at most ``yield_force``.
+    yield_force : float
+        Of posts that yield: the moment that resists over the height of the 50-ms force above the point about
+        which the post turns, in the scene of ``equivalent_static_force`` [N]. Infinite of all others.
+    has_yielded : bool
+        Whether the post yields in that scene.
     scene : mapping of str to int
         Each of the values above that are enveloped -> number of the scene that it comes from.
     band : mapping of str to (float, float)
@@ -109,6 +117,8 @@ class ElementDesign:
     direction: float = 0.0
     moment: float = 0.0
     equivalent_static_force: float = 0.0
+    yield_force: float = math.inf
+    has_yielded: bool = False
     scene: Mapping[str, int] = field(default_factory=dict)
     band: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     touched: bool = False
@@ -139,6 +149,7 @@ class ElementDesign:
             **{name: getattr(self, name) for name in ("peak_force", "force_50ms", "height", "direction")},
             **{name: getattr(self, name) for name in ("moment", "equivalent_static_force")},
             "dynamic_load_factor": self.dynamic_load_factor,
+            "has_yielded": self.has_yielded,
             "scene": dict(self.scene),
             "band": {name: list(ends) for name, ends in self.band.items()},
         }
@@ -194,10 +205,12 @@ def element_design(
     system: System,
     separation: float = math.inf,
     weaker: Weaker | None = None,
+    has_yielded: bool = False,
 ) -> ElementDesign:
     """Return what an element has to carry in one scene; ``normal`` is that into the barrier, system in SI.
 
-    The impulse is that up to the time of ``separation`` [s]. ``weaker``: what gives way of posts that yield.
+    The impulse is that up to the time of ``separation`` [s]. ``weaker``: what gives way of posts that yield;
+    ``has_yielded``: whether this one does.
     """
     if not load.touched:
         return ElementDesign(load.index, load.name)
@@ -213,22 +226,39 @@ def element_design(
     rows = math.ceil(min(separation / load.interval, len(load.force)))
     impulse = load.interval * load.force[1 : rows + 1].sum(axis=0)
     height = float(resultant_height(force, moment, load.line)[row])
+    peak = float(lateral_level(filtered, load, normal).max())
     most = math.inf if weaker is None else weaker.greatest_load(height)
     return ElementDesign(
         load.index,
         load.name,
         impulse=float(impulse @ normal),
         impulse_vector=impulse,
-        peak_force=float(lateral_level(filtered, load, normal).max()),
+        peak_force=peak,
         force_50ms=float(level[row]),
         height=height,
         direction=degrees_between(normal, direction),
         moment=float(overturning(moment, load.line).max()),
-        equivalent_static_force=resistance(
-            np.clip(load.force[1:] @ direction, -most, most), load.interval, *system
+        equivalent_static_force=(
+            min(most, _MOST_OF_ONE_PULSE * peak)
+            if has_yielded
+            else static_force(load, direction, system, most)
         ),
+        yield_force=most,
+        has_yielded=has_yielded,
         touched=True,
     )
+
+
+def static_force(load: ElementLoad, direction: Floats, system: System, yield_force: float) -> float:
+    """Return the equivalent static force of an element that has not yielded [N].
+
+    Above a finite ``yield_force`` [N] it would yield: then the system is elastic, and that force is the most.
+    """
+    ductility = system.ductility if yield_force == math.inf else 1.0
+    force = resistance(
+        load.force[1:] @ direction, load.interval, system.natural_period, ductility, system.damping
+    )
+    return min(force, yield_force)
 
 
 def lateral_level(force: Floats, load: ElementLoad, normal: Floats) -> Floats:
@@ -263,6 +293,8 @@ def envelope(
         impulse_vector=rows[best["impulse"]].impulse_vector,
         height=force.height,
         direction=force.direction,
+        yield_force=rows[best["equivalent_static_force"]].yield_force,
+        has_yielded=rows[best["equivalent_static_force"]].has_yielded,
         scene=FrozenMapping(named),
         touched=rows[best["equivalent_static_force"]].touched,
         case=cases[best["equivalent_static_force"]],

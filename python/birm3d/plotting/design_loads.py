@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -152,8 +153,9 @@ def _spectrum(axes: Axes, loads: DesignLoad, row: ElementDesign) -> None:
     interval = row.load.interval
     low = max(_PERIODS[0], LEAST_INTERVALS * interval)
     own = loads.natural_period
-    wanted = [(1.0, GREEN, "elastic", _POINTS)]
-    if loads.ductility > 1.0:
+    label = "moment that the post resists" if row.has_yielded else "elastic"
+    wanted = [(1.0, GREEN, label, _POINTS)]
+    if loads.ductility > 1.0 and row.yield_force == math.inf:
         wanted.append((loads.ductility, RED, f"ductility {loads.ductility:g}", _SOFT_POINTS))
     for ductility, color, label, points in wanted:
         periods = np.unique([own, *np.geomspace(min(low, own), max(_PERIODS[1], own), points)])

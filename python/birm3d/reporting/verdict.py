@@ -112,14 +112,12 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
             f"{_load_band(case)}",
         )
     if isinstance(case.design_loads, DesignLoad) and loads:
-        row, period = case.design_loads.governing, case.design_loads.natural_period
-        assumed = _assumed(case.design_loads)
+        row = case.design_loads.governing
         alone = "this run alone, " if case.study is not None and len(case.design_loads.scenes) == 1 else ""
         yield (
             "What does its foundation have to carry?",
             f"{alone}{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
-            f"{row.height:.2f} m, natural period {period:g} s{assumed}, ductility "
-            f"{case.design_loads.ductility:g}{_design_band(row)}",
+            f"{row.height:.2f} m, {_made_by(case.design_loads)}{_design_band(row)}",
         )
     yield "Would occupants be at risk?", _risk_line(case)
     yield "How well is it computed?", _computed_line(case)
@@ -213,6 +211,13 @@ def _load_band(case: Case) -> str:
     if isinstance(case.bands, str) or name not in case.bands.prediction.low:
         return ""
     return f"; 80 % of the class: {band_of(case.bands, name, 1e3, ',.0f')} kN on the most loaded element"
+
+
+def _made_by(loads: DesignLoad) -> str:
+    """Return what the equivalent static force of the governing element is made from."""
+    if loads.governing.has_yielded:
+        return "from the moment that the post resists as given; steel that is stronger asks for more"
+    return f"natural period {loads.natural_period:g} s{_assumed(loads)}, ductility {loads.ductility:g}"
 
 
 def _assumed(loads: DesignLoad) -> str:
