@@ -87,8 +87,9 @@ def design_load(
     times the dynamic load factor. Above, it is the resistance R of the elastic-plastic system for which
     max|u| = ductility R / (m w^2). See :mod:`birm3d.assessment.oscillator`.
 
-    Of a post that yields in the run it is that of statics: the moment that tube or foundation resists, over
-    the height of the 50-ms force above the point about which the post turns. That is the capacity design of foundations, as in
+    Of a post that yields in the run it is that of statics: the moment that the post resists over its arm. The
+    moment is that of tube or foundation. The arm is the height of the 50-ms force above the point about which
+    the post turns. That is the capacity design of foundations, as in
     EN 1998-1, 4.4.2.6, without its factor for overstrength. The run has spent the yielding already, so that
     natural period and ductility do not change this force. It is at most twice the peak force, as no single
     pulse has a greater dynamic load factor.
