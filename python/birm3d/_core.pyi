@@ -921,9 +921,9 @@ class Settings:
         What is not among the values has the default of a car.
         """
     @typing.overload
-    def __init__(self, values: dict[str, typing.Any], vehicle: Vehicle, barrier: Barrier) -> None:
+    def __init__(self, values: dict[str, typing.Any], vehicle: Vehicle, barriers: collections.abc.Sequence[Barrier]) -> None:
         """
-        What is not among the values is the vehicle's. barrier: None where there is none.
+        What is not among the values is the vehicle's. barriers: one or none, as of a Scene.
         """
     @property
     def cornering_stiffness(self) -> float:
