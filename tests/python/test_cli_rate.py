@@ -32,6 +32,25 @@ def test_run_with_ratings_as_json(command, capsys) -> None:
     assert "dynamic_crush" in found["metrics"]
 
 
+@pytest.mark.parametrize("first", ["run", "rate"])
+def test_a_standard_that_does_not_know_the_vehicle_leaves_the_rest(command, capsys, tmp_path, first) -> None:
+    option, plot = ("--rate" if first == "run" else "--standard"), tmp_path / "run.png"
+    more = ["--plot", str(plot)] if first == "run" else []
+    assert command(first, *TRUCK, option, "PAS 68", option, "ASTM F2656", *more) == 0
+    out, err = capsys.readouterr()
+    assert "ASTM F2656, indicative: M50-P1" in out
+    assert "no rating by PAS 68: vehicle must be one that PAS 68 knows" in err
+    assert plot.exists() == bool(more)
+    assert command(first, *TRUCK, option, "PAS 68", "--occupant-risk", *more, "--json") == 2
+    out, err = capsys.readouterr()
+    found = json.loads(out)
+    assert list(found["not_rated"]) == ["PAS 68"]
+    assert "ratings" not in found
+    assert "oiv_x" in found["occupant_risk"]
+    assert ("metrics" in found) == (first == "run")
+    assert "no rating by PAS 68" in err
+
+
 def test_of_a_scene_file_and_a_result(command, capsys, tmp_path) -> None:
     scene, result = tmp_path / "scene.toml", tmp_path / "r.npz"
     scene.write_text(
