@@ -302,3 +302,18 @@ def test_a_pickup_far_beyond_its_tipping_angle_does_not_stand_up_again(height: f
     result = Simulation(pickup, Barrier.jersey(height=height), 27.78, 25.0).run()
     assert result.outcome == "rolled_over"
     assert abs(result.roll[-1]) > 60.0
+
+
+def test_a_metric_that_the_scene_can_not_have_says_why() -> None:
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    metrics = Simulation(car, Barrier.rigid_wall(width=3.0), "10 m/s", impact_angle=0).run().metrics
+    for name, reason in (
+        ("vehicle_penetration", r"the path runs along the barrier's line \(impact_angle 0\)"),
+        ("post_tilt", "no posts yield"),
+        ("barrier_deflection", "nothing of the barrier moves"),
+        ("max_overturning_ratio", "no segments stand free"),
+        ("bed_slip", "no load bed that slides"),
+        ("max_articulation_angle", "the vehicle is one unit"),
+    ):
+        with pytest.raises(KeyError, match=f"{name}: .*{reason}"):
+            metrics[name]
