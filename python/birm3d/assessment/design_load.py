@@ -19,7 +19,7 @@ from ..study.predict import Prediction
 from ..study.table import Study
 from ..units import Quantity
 from .class_bands import Bands, Seen, bands_of, class_draws, governing_scenes, with_bands
-from .design_caution import has_blow, run_cautions
+from .design_caution import Doubts, has_blow, merged, run_cautions, run_doubts
 from .design_plan import DesignPlan, design_plan, predicted_scene
 from .design_remarks import design_cautions
 from .design_table import DesignLoad, LoadScene
@@ -59,6 +59,7 @@ class _Found(NamedTuple):
 
     rows: list[ElementDesign]
     cautions: dict[str, tuple[str, ...]]
+    doubts: Doubts
 
 
 @checked
@@ -218,13 +219,14 @@ class _Envelope:
         )
         found = [self.found[run] for run in sorted(self.found)]
         rows = [row for one in found for row in one.rows]
-        cautions = design_cautions(load, plan, rows, (one.cautions for one in found))
+        of_runs = merged((one.cautions for one in found), (one.doubts for one in found))
+        cautions = design_cautions(load, plan, rows, of_runs)
         load.caution = " ".join(dict.fromkeys(cautions))
         return load
 
 
 def _look(result: Result, normal: Floats, system: System) -> _Found:
-    return _Found(_rows_of(result, normal, system), run_cautions(result))
+    return _Found(_rows_of(result, normal, system), run_cautions(result), run_doubts(result))
 
 
 def _rows_of(result: Result, normal: Floats, system: System) -> list[ElementDesign]:

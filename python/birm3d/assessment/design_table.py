@@ -217,7 +217,8 @@ class DesignLoad:
         return (
             f"Forces are horizontal, of walls across their line. Peak force: {self.peak_filter}. Force and "
             "moment: greatest 50-ms means; height is that of the 50-ms force above the element's foot, where "
-            "the moment is taken; direction that from the barrier's normal. Equivalent static force, at this "
+            f"the moment is taken; direction that from the barrier's normal. {_of_moments(self.rows)}"
+            "Equivalent static force, at this "
             f"height and in this direction: system with one degree of freedom, {kind}, natural period "
             f"{self.natural_period:g} s{damped}, unfiltered load.{_of_yielding(self.rows)}{band}"
         )
@@ -402,6 +403,13 @@ _UNITS = {
     "moment": "N m",
 }
 _UNITS |= {f"{name}_{end}": _UNITS[name] for name in BANDED if name in _UNITS for end in ("low", "high")}
+
+
+def _of_moments(rows: tuple[ElementDesign, ...]) -> str:
+    """Return that moments are not forces times heights, where one differs by more than a rounded number."""
+    if all(abs(row.moment - row.force_50ms * row.height) <= 0.02 * row.moment for row in rows):
+        return ""
+    return "The greatest moment is of an instant of its own: it is not the 50-ms force times its height. "
 
 
 def _of_yielding(rows: tuple[ElementDesign, ...]) -> str:

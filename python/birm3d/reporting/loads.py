@@ -40,7 +40,7 @@ _FREE = (
 
 _WHOLE_FORCE = (
     "Forces are magnitudes of the whole force, its vertical part included; those of the design loads are "
-    "horizontal."
+    "horizontal. Each greatest value is of an instant of its own: a moment is not a force times its height."
 )
 
 

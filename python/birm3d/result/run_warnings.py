@@ -13,7 +13,7 @@ from .missed import missed_barrier
 from .overlap import overlaps
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from .. import _core
     from ..base.complaints import Complaint
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .analysis import RunAnalysis
     from .stored import Stored
 
-__all__ = ["complaints_of_run", "doubt_lines", "warn_of_run"]
+__all__ = ["complaints_of_run", "doubt_lines", "doubts", "warn_of_run", "worst_doubts"]
 
 
 def complaints_of_run(
@@ -33,11 +33,11 @@ def complaints_of_run(
         core_complaints(scene, statistics),
         open_balances(scene, balances),
         missed_barrier(scene, event),
-        _doubts(scene, statistics, event),
+        doubts(scene, statistics, event),
     )
 
 
-def _doubts(
+def doubts(
     scene: Scene, statistics: _core.StepStatistics | Stored, event: _core.Event | Stored
 ) -> Iterator[Complaint]:
     """Return complaints that say why the outcome can not be relied on."""
@@ -46,9 +46,19 @@ def _doubts(
 
 def doubt_lines(result: RunAnalysis) -> Iterator[str]:
     """Yield why the outcome can not be relied on, for cautions and reports."""
-    if result._event is None:
-        return
-    for doubt in _doubts(result.scene, result.statistics, result._event):
+    yield from worst_doubts([result])
+
+
+def worst_doubts(results: Iterable[RunAnalysis]) -> Iterator[str]:
+    """Yield why the outcomes of runs can not be relied on: of each kind the worst."""
+    worst: dict[str, Complaint] = {}
+    for result in results:
+        if result._event is None:
+            continue
+        for doubt in doubts(result.scene, result.statistics, result._event):
+            if doubt.quantity not in worst or doubt.value > worst[doubt.quantity].value:
+                worst[doubt.quantity] = doubt
+    for doubt in worst.values():
         assert doubt.advice is not None
         yield doubt.advice()
 
