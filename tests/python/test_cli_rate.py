@@ -108,3 +108,14 @@ def test_vehicles_of_the_class(command, capsys) -> None:
     assert "occupant risk of 8 runs" in out
     assert command("loads", *TRUCK, "--draws", "8") == 0
     assert "80 % band over 8 vehicles of the class" in capsys.readouterr().out
+
+
+@pytest.mark.filterwarnings("always::birm3d.LeaningPostWarning", "ignore::birm3d.CoreContactWarning")
+def test_rows_of_a_study_that_is_not_shown_are_not_named(command, capsys) -> None:
+    van = ["--vehicle", "van_3500", "--mesh-density", "0.3", "--speed", "22.35m/s"]
+    tubes = ["--barrier", "bollards", "--diameter", "0.273", "--height", "0.7", "--wall-thickness", "16mm"]
+    assert command("rate", *van, *tubes, "--standard", "IWA 14-1", "--draws", "8") == 0
+    warning = capsys.readouterr().err
+    assert "posts throw the vehicle" in warning
+    assert "(row " not in warning
+    assert " of the runs)" in warning

@@ -308,13 +308,13 @@ def test_later_contacts_are_counted_not_averaged(tmp_path: Path, monkeypatch: py
     page = Page(birm3d.dossier(drawn, tmp_path / "a", draws=8))
     rows = {row[0]: row[1:] for row in page.table("Outcomes of the study")}
     low, high = stats.binomtest(3, 12).proportion_ci(0.95, method="wilson")
-    assert rows["of any outcome, with a later contact, which counts for nothing here"] == [
+    assert rows["any outcome, with a contact after the values at separation"] == [
         "3 of 12, 25 %",
         f"{100 * low:.0f} to {100 * high:.0f} %",
     ]
     beside = [row[0] for row in page.table("This run beside")]
-    assert not any("later contact" in label for label in beside)
-    assert any("with a later contact" in row[0] for row in page.table("Outcomes of the vehicles"))
+    assert not any("values at separation" in label for label in beside)
+    assert any("a contact after" in row[0] for row in page.table("Outcomes of the vehicles"))
 
 
 def test_given_tests_are_computed_by_this_version(page: Page, result: Result) -> None:

@@ -6,12 +6,13 @@ import math
 import pickle
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
-from birm3d.result.event import OUTCOMES
+from birm3d.result.event import OUTCOMES, outcome_detail
 from tires import held_straight, quick_to_steer
 
 OLD = Path(__file__).parents[1] / "data" / "results" / "bollards_0_1_0.npz"
@@ -317,3 +318,17 @@ def test_a_metric_that_the_scene_can_not_have_says_why() -> None:
     ):
         with pytest.raises(KeyError, match=f"{name}: .*{reason}"):
             metrics[name]
+
+
+@pytest.mark.parametrize(("touching", "where"), [(True, "in contact with"), (False, "clear of")])
+def test_a_slow_vehicle_is_at_the_barrier_only_if_it_touches_it(
+    monkeypatch: pytest.MonkeyPatch, touching: bool, where: str
+) -> None:
+    monkeypatch.setattr("birm3d.result.event._nearing", lambda *_: "")
+    ended = SimpleNamespace(
+        _event=SimpleNamespace(manner="slow", touching=touching, rolled_over=False),
+        _history=SimpleNamespace(elements=[1]),
+        scene=SimpleNamespace(barrier=None),
+    )
+    told = f"it was slower than a tenth of its impact speed when the run ended, {where} the barrier"
+    assert outcome_detail(ended) == told  # type: ignore[arg-type]

@@ -112,7 +112,6 @@ _TIPPED = 60.0  # deg; beyond, a leading unit may be the one whose up axis point
 _MANNERS = {
     "rests_untouched": "it came to rest before it reached the barrier",
     "rests": "it came to rest at the barrier",
-    "slow": "it was slower than a tenth of its impact speed when the run ended, at the barrier",
     "rebounds": "it rebounded from the barrier",
     "leaves": "it left along the barrier",
     "slides_to_end": "it slid along the barrier to its end and left",
@@ -143,9 +142,11 @@ def outcome_detail(result: RunRecord) -> str:
     if event.manner == "no_barrier":
         return f"there is no barrier{': it rolled over' if rolled else ''}"
     touched = bool(result._history.elements)
-    if event.manner == "moving":
+    if event.manner in ("moving", "slow"):
         where = "in contact with" if event.touching else "clear of" if touched else "not yet at"
-        return f"it was still moving when the run ended, {where} the barrier{rolled}"
+        pace = "slower than a tenth of its impact speed" if event.manner == "slow" else "still moving"
+        nearing = _nearing(event, result.scene.barrier) if event.manner == "slow" else ""
+        return f"it was {pace} when the run ended, {where} the barrier{nearing}{rolled}"
     if event.manner in ("between", "beside"):
         past = "between two elements of the barrier" if event.manner == "between" else "the barrier's end"
         return f"it passed {past}, {'touching it' if touched else 'untouched'}{rolled}"
