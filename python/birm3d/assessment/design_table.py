@@ -243,7 +243,7 @@ class DesignLoad:
                 self._cell(row, "impulse"),
                 self._cell(row, "peak_force"),
                 self._cell(row, "force_50ms"),
-                f"{row.height:.2f}{_band(row, 'height', 1.0)}",
+                f"{row.height:.2f}{_band(row, 'height', 1.0)}" if row.height > 0.0 else "–",
                 f"{round(row.direction)}{_band(row, 'direction', 1.0)}",
                 self._cell(row, "moment"),
                 self._cell(row, "equivalent_static_force"),

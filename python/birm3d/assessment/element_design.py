@@ -81,7 +81,7 @@ class ElementDesign:
     force_50ms : float
         Greatest mean over 50 ms [N].
     height : float
-        Of ``force_50ms`` above the foot [m].
+        Of ``force_50ms`` above the foot [m]; 0 where it has none, see :class:`birm3d.ElementLoad`.
     direction : float
         Of ``force_50ms`` from the barrier's normal, positive to the left seen along it [deg].
     moment : float
