@@ -216,7 +216,7 @@ def _load_band(case: Case) -> str:
 def _made_by(loads: DesignLoad) -> str:
     """Return what the equivalent static force of the governing element is made from."""
     if loads.governing.has_yielded:
-        return "from the moment that the post resists as given; steel that is stronger asks for more"
+        return "from the moment that the post resists; what is stronger than given asks for more"
     return f"natural period {loads.natural_period:g} s{_assumed(loads)}, ductility {loads.ductility:g}"
 
 
