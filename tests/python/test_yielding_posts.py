@@ -14,7 +14,7 @@ import pytest
 from birm3d import Barrier, Foundation, Settings, Simulation, UnitWarning, Vehicle, units
 from birm3d.assessment.design_caution import barrier_caution
 from birm3d.barrier.yielding import Tube
-from birm3d.reporting.verdict import _made_by
+from birm3d.reporting.static_force import made_by
 from birm3d.result.element_motion import element_motion
 from birm3d.simulation.scene_file import read_scene_file
 from scipy.integrate import quad
@@ -373,7 +373,7 @@ def test_the_equivalent_static_force_is_what_the_post_passes_on(at_three: birm3d
         assert row.moment == pytest.approx(
             moment, rel=0.1
         )  # the inertia of the post takes and gives the rest
-        assert "moment that the post resists" in _made_by(load)  # the headline of the dossier
+        assert "moment that the post resists" in made_by(load)  # the headline of the dossier
         assert load.spectrum([0.02, 0.5]).tolist() == [row.equivalent_static_force] * 2
         assert "natural period and ductility do not change" in load.caution
         assert "is assumed" not in load.caution

@@ -23,13 +23,8 @@ from .design_caution import Doubts, has_blow, merged, run_cautions, run_doubts
 from .design_plan import DesignPlan, design_plan, predicted_scene
 from .design_remarks import design_cautions
 from .design_table import DesignLoad, LoadScene
-from .element_design import (
-    ElementDesign,
-    System,
-    element_design,
-    envelope,
-    peak_filter,
-)
+from .element_design import ElementDesign, System, element_design, peak_filter
+from .element_envelope import envelope
 
 __all__ = [
     "DesignLoadInterrupted",
