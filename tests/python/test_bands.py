@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import cache
 
 import birm3d
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Channel, Prediction, Simulation, Vehicle, units
 from birm3d.assessment import RiskStudy
+from birm3d.assessment.class_bands import bands_of
 from birm3d.scene_parameters import varied
 from scipy import stats
 
@@ -164,3 +166,26 @@ def test_a_channel_of_the_wrong_sign_is_told() -> None:
     assert "The vehicle gains 12.5 m/s along x" in wrong._repr_html_()
     assert right.notes == ()
     assert right.olc > 10.0
+
+
+@pytest.mark.parametrize(
+    ("factor", "told"),
+    [
+        (
+            0.5,
+            "On bollard 2, impulse, peak force, 50-ms force, moment, equivalent static force and height lie ",
+        ),
+        (
+            2.0,
+            "On bollard 2, impulse, peak force, 50-ms force, moment, equivalent static force and height lie ",
+        ),
+        (1.0, ""),
+    ],
+)
+def test_values_outside_their_bands_are_named_with_their_side(factor: float, told: str) -> None:
+    row = replace(birm3d.design_load(CRASH, natural_period=0.06, draws=0)["bollard 2"], index=0)
+    other = replace(row, **{name: getattr(row, name) / factor for name in BANDED})
+    found = bands_of([row], [(0, ([other], False)), (1, ([other], False))], 2)
+    side = "below the band, which is unsafe" if factor < 1.0 else "above the band"
+    assert " ".join(found.cautions).startswith(f"{told}{side}" if told else "")
+    assert len(found.cautions) == (1 if told else 0)

@@ -374,6 +374,7 @@ class TestVerdicts:
         assert fit.identified == ()
         for name in ("outer", "inner"):
             assert fit.intervals[name] is None
+            assert fit.verdict.startswith("NOT identified, without an interval: ")
             assert "rank-deficient" in fit[name].reason
             assert "outer" in fit[name].reason
             assert "inner" in fit[name].reason

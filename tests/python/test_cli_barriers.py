@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from birm3d import Barrier, Simulation, Vehicle, units
+from birm3d import Barrier, Foundation, Simulation, Vehicle, units
 
 CAR = ("run", "--vehicle", "passenger_car", "--mesh-density", "0.1", "--speed", "30mph")
 
@@ -38,6 +38,15 @@ CAR = ("run", "--vehicle", "passenger_car", "--mesh-density", "0.1", "--speed", 
         (
             "--barrier planter --length 1.5 --width 80cm --height 36in",
             Barrier.planter(length=1.5, width=0.8, height=36 * units.inch),
+        ),
+        (
+            "--barrier bollards --count 3 --wall-thickness 16mm --foundation-moment 60kNm "
+            "--foundation-rotation-depth 40cm --foundation-mass 0.5t",
+            Barrier.bollards(
+                count=3,
+                wall_thickness=0.016,
+                foundation=Foundation(moment=60e3, rotation_depth=0.4, mass=500.0),
+            ),
         ),
     ],
 )  # fmt: skip
@@ -103,3 +112,25 @@ def test_what_can_not_be(
     assert out == ""
     for part in parts:
         assert part in err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (
+            ["--barrier", "jersey", "--foundation-moment", "60 kN m"],
+            "--foundation-moment: of bollards",
+        ),
+        (["--barrier", "bollards", "--foundation-mass", "1t"], "--foundation-moment is missing"),
+        (
+            ["--barrier", "bollards", "--foundation-moment", "60 kN m"],
+            "foundation must be None where",
+        ),
+        (["--barrier", "bollards", "--foundation-moment", "60 kg"], "moment must be a number with one of"),
+    ],
+)
+def test_foundations_that_can_not_be_are_refused(
+    command: Callable[..., int], capsys: pytest.CaptureFixture[str], options: list[str], message: str
+) -> None:
+    assert command(*CAR, *options) == 2
+    assert message in capsys.readouterr().err

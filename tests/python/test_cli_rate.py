@@ -32,6 +32,25 @@ def test_run_with_ratings_as_json(command, capsys) -> None:
     assert "dynamic_crush" in found["metrics"]
 
 
+@pytest.mark.parametrize("first", ["run", "rate"])
+def test_a_standard_that_does_not_know_the_vehicle_leaves_the_rest(command, capsys, tmp_path, first) -> None:
+    option, plot = ("--rate" if first == "run" else "--standard"), tmp_path / "run.png"
+    more = ["--plot", str(plot)] if first == "run" else []
+    assert command(first, *TRUCK, option, "PAS 68", option, "ASTM F2656", *more) == 0
+    out, err = capsys.readouterr()
+    assert "ASTM F2656, indicative: M50-P1" in out
+    assert "no rating by PAS 68: vehicle must be one that PAS 68 knows" in err
+    assert plot.exists() == bool(more)
+    assert command(first, *TRUCK, option, "PAS 68", "--occupant-risk", *more, "--json") == 2
+    out, err = capsys.readouterr()
+    found = json.loads(out)
+    assert list(found["not_rated"]) == ["PAS 68"]
+    assert "ratings" not in found
+    assert "oiv_x" in found["occupant_risk"]
+    assert ("metrics" in found) == (first == "run")
+    assert "no rating by PAS 68" in err
+
+
 def test_of_a_scene_file_and_a_result(command, capsys, tmp_path) -> None:
     scene, result = tmp_path / "scene.toml", tmp_path / "r.npz"
     scene.write_text(
@@ -89,3 +108,14 @@ def test_vehicles_of_the_class(command, capsys) -> None:
     assert "occupant risk of 8 runs" in out
     assert command("loads", *TRUCK, "--draws", "8") == 0
     assert "80 % band over 8 vehicles of the class" in capsys.readouterr().out
+
+
+@pytest.mark.filterwarnings("always::birm3d.LeaningPostWarning", "ignore::birm3d.CoreContactWarning")
+def test_rows_of_a_study_that_is_not_shown_are_not_named(command, capsys) -> None:
+    van = ["--vehicle", "van_3500", "--mesh-density", "0.3", "--speed", "22.35m/s"]
+    tubes = ["--barrier", "bollards", "--diameter", "0.273", "--height", "0.7", "--wall-thickness", "16mm"]
+    assert command("rate", *van, *tubes, "--standard", "IWA 14-1", "--draws", "8") == 0
+    warning = capsys.readouterr().err
+    assert "posts throw the vehicle" in warning
+    assert "(row " not in warning
+    assert " of the runs)" in warning

@@ -14,6 +14,8 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, DesignLoad, DesignLoadInterrupted, Settings, Simulation, Vehicle
+from birm3d.assessment.design_plan import design_plan
+from birm3d.assessment.design_remarks import _cover_the_row
 from one_truss import one_truss
 from scipy.signal import butter, filtfilt
 from tires import quick_to_steer
@@ -525,3 +527,47 @@ def test_a_lower_speed_that_loads_a_post_more_is_said() -> None:
     both = birm3d.design_load(list(at.values()), natural_period=0.05)
     assert "A lower speed can load a post more" in one.caution
     assert "A lower speed can load a post more" not in both.caution
+
+
+def test_a_panel_has_the_number_of_the_table(envelope: DesignLoad) -> None:
+    """The moment's panel had that of the drawn scene, where the table has that of another one."""
+    panels = envelope.plot().axes
+    row, drawn = envelope.governing, envelope.governing.scene["equivalent_static_force"]
+    for axes, name, unit in ((panels[1], "force_50ms", "kN"), (panels[2], "moment", "kN m")):
+        number = f"{getattr(row, name) / 1e3:,.0f} {unit}"
+        texts = [text.get_text() for text in axes.texts]
+        labels = [text.get_text() for text in axes.get_legend().get_texts()]
+        if row.scene[name] == drawn:
+            assert number in texts
+        else:
+            assert f"50-ms mean in scene {row.scene[name]}, {number}" in labels
+            assert not any(text.endswith(unit) for text in texts)
+
+
+@pytest.mark.parametrize(
+    ("offsets", "angle", "beyond"),
+    [
+        ([0.0, 0.65], 90.0, False),  # a post, and the middle of a gap
+        ([0.0, 0.3], 90.0, True),
+        ([0.1, 0.75], 90.0, True),  # half a spacing, but the mirror images of others are missing
+        ([0.0, 0.65], 60.0, True),
+        ([-0.65, 0.65], 60.0, False),
+    ],
+)
+def test_offsets_that_cover_the_row_ask_for_no_others(
+    offsets: list[float], angle: float, beyond: bool
+) -> None:
+    simulation = Simulation(car(), Barrier.bollards(count=5, spacing=1.3), 6.0, angle)
+    plan = design_plan(
+        simulation, {"impact_offset": offsets}, quantile=1.0, natural_period=None, ductility=1.0, damping=0.0
+    )
+    assert _cover_the_row(plan.varied["impact_offset"], plan) is not beyond
+
+
+def test_that_a_moment_is_not_force_times_height_is_said_near_the_table(envelope: DesignLoad) -> None:
+    told = "it is not the 50-ms force times its height"
+    apart = [abs(row.moment / (row.force_50ms * row.height) - 1.0) > 0.03 for row in envelope if row.moment]
+    assert (told in envelope.basis) == any(apart)
+    free = Settings(gravity=0.0, ground=False)
+    simulation = Simulation(one_truss(0.6), Barrier.rigid_wall(friction=0.0), 5.0, settings=free)
+    assert told not in birm3d.design_load(simulation, natural_period=0.1).basis

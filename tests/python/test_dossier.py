@@ -23,6 +23,7 @@ from birm3d.assessment.criteria import Criterion
 from birm3d.assessment.rating import Rating
 from birm3d.assessment.rating_bands import band_rows
 from birm3d.reporting.given_tests import Facts, _facts, errors, given_tests, nearest
+from birm3d.reporting.loads import _gives_way
 from birm3d.reporting.numbers import percent
 from birm3d.reporting.page import _mark
 from birm3d.reporting.shares import share_of_runs
@@ -307,13 +308,13 @@ def test_later_contacts_are_counted_not_averaged(tmp_path: Path, monkeypatch: py
     page = Page(birm3d.dossier(drawn, tmp_path / "a", draws=8))
     rows = {row[0]: row[1:] for row in page.table("Outcomes of the study")}
     low, high = stats.binomtest(3, 12).proportion_ci(0.95, method="wilson")
-    assert rows["of any outcome, with a later contact, which counts for nothing here"] == [
+    assert rows["any outcome, with a contact after the values at separation"] == [
         "3 of 12, 25 %",
         f"{100 * low:.0f} to {100 * high:.0f} %",
     ]
     beside = [row[0] for row in page.table("This run beside")]
-    assert not any("later contact" in label for label in beside)
-    assert any("with a later contact" in row[0] for row in page.table("Outcomes of the vehicles"))
+    assert not any("values at separation" in label for label in beside)
+    assert any("a contact after" in row[0] for row in page.table("Outcomes of the vehicles"))
 
 
 def test_given_tests_are_computed_by_this_version(page: Page, result: Result) -> None:
@@ -688,6 +689,28 @@ def test_a_free_standing_barrier_is_not_called_rigid(tmp_path: Path) -> None:
     page = Page(birm3d.dossier(free_standing().run(), tmp_path / "report", draws=0))
     assert not any("The barrier is rigid" in text for text in page.texts["p"])
     assert any("The segments stand free" in text for text in page.texts["p"])
+
+
+@pytest.mark.parametrize(
+    ("barrier", "told"),
+    [
+        (Barrier.bollards(), "The barrier is rigid"),
+        (
+            Barrier.bollards(diameter=0.273, wall_thickness=0.016),
+            "the plastic moment of their tubes of 376 kN m limits",
+        ),
+        (
+            Barrier.bollards(wall_thickness=0.02, foundation=birm3d.Foundation(moment="250 kN m")),
+            "the moment of their foundation of 250 kN m limits",
+        ),
+        (Barrier.jersey(length=60.0, segments=20, free_standing=True), "The segments stand free"),
+    ],
+)
+def test_what_limits_the_force_is_that_of_the_barrier(barrier: Barrier, told: str) -> None:
+    words = _gives_way(barrier)
+    assert told in words
+    assert ("is rigid" in words) == (barrier.yields() is None and barrier.stands_free() is None)
+    assert ("stronger than" in words) == (barrier.yields() is not None)
 
 
 def test_impulse_of_the_design_loads_ends_with_the_separation(page: Page) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
 from birm3d.filters import cfc
-from birm3d.result.element_loads import LEAST_SHARE, resultant_height
+from birm3d.result.element_loads import LEAST_SHARE, ElementLoad, resultant_height
 from birm3d.result.summary import ELEMENT_COLUMNS, element_rows
 
 FREE = Settings(gravity=0.0, ground=False)
@@ -121,6 +121,19 @@ def test_height_of_what_does_not_push() -> None:
     moment[:, 2] += 3.0  # a twist has no height
     assert resultant_height(force, moment).tolist() == [0.0, 0.0, pytest.approx(0.7), 0.0]
     assert resultant_height(np.zeros((3, 3)), np.ones((3, 3))).tolist() == [0.0] * 3
+    assert resultant_height(force, -moment).tolist() == [0.0] * 4  # below the ground there is none
+
+
+def test_a_blow_within_one_row_leaves_the_heights_of_the_others() -> None:
+    """Of the unfiltered peak of 102 MN a hundredth is more than all the rest of the crash has."""
+    force = np.zeros((2000, 3))
+    force[100:1500, 0] = 400e3
+    force[700, 0] = 102e6
+    moment = np.cross([0.0, 0.0, 0.5], force)
+    for line in (None, np.array([0.0, 1.0, 0.0])):
+        load = ElementLoad(0, "bollard", force, moment, 1e-4, line)
+        assert load.resultant_height[100:1500] == pytest.approx(0.5)
+        assert not load.resultant_height[1500:].any()
 
 
 def test_a_mirrored_scene_mirrors(row: Result) -> None:

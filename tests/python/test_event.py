@@ -6,12 +6,13 @@ import math
 import pickle
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
-from birm3d.result.event import OUTCOMES
+from birm3d.result.event import OUTCOMES, outcome_detail
 from tires import held_straight, quick_to_steer
 
 OLD = Path(__file__).parents[1] / "data" / "results" / "bollards_0_1_0.npz"
@@ -302,3 +303,32 @@ def test_a_pickup_far_beyond_its_tipping_angle_does_not_stand_up_again(height: f
     result = Simulation(pickup, Barrier.jersey(height=height), 27.78, 25.0).run()
     assert result.outcome == "rolled_over"
     assert abs(result.roll[-1]) > 60.0
+
+
+def test_a_metric_that_the_scene_can_not_have_says_why() -> None:
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    metrics = Simulation(car, Barrier.rigid_wall(width=3.0), "10 m/s", impact_angle=0).run().metrics
+    for name, reason in (
+        ("vehicle_penetration", r"the path runs along the barrier's line \(impact_angle 0\)"),
+        ("post_tilt", "no posts yield"),
+        ("barrier_deflection", "nothing of the barrier moves"),
+        ("max_overturning_ratio", "no segments stand free"),
+        ("bed_slip", "no load bed that slides"),
+        ("max_articulation_angle", "the vehicle is one unit"),
+    ):
+        with pytest.raises(KeyError, match=f"{name}: .*{reason}"):
+            metrics[name]
+
+
+@pytest.mark.parametrize(("touching", "where"), [(True, "in contact with"), (False, "clear of")])
+def test_a_slow_vehicle_is_at_the_barrier_only_if_it_touches_it(
+    monkeypatch: pytest.MonkeyPatch, touching: bool, where: str
+) -> None:
+    monkeypatch.setattr("birm3d.result.event._nearing", lambda *_: "")
+    ended = SimpleNamespace(
+        _event=SimpleNamespace(manner="slow", touching=touching, rolled_over=False),
+        _history=SimpleNamespace(elements=[1]),
+        scene=SimpleNamespace(barrier=None),
+    )
+    told = f"it was slower than a tenth of its impact speed when the run ended, {where} the barrier"
+    assert outcome_detail(ended) == told  # type: ignore[arg-type]

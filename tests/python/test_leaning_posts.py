@@ -64,3 +64,16 @@ def test_no_warning_at_rigid_posts() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", LeaningPostWarning)
         assert van_at(Barrier.bollards(**TUBES)).statistics.fastest_rise < 3.0  # the van pitches
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.LeaningPostWarning", "ignore::birm3d.CoreContactWarning")
+def test_several_runs_at_leaning_posts_have_one_sentence_with_the_greatest_number() -> None:
+    posts = Barrier.bollards(**TUBES, wall_thickness=0.016)
+    van = Vehicle.preset("van_3500", mesh_density=0.3)
+    runs = [Simulation(van, posts, speed).run() for speed in (22.35, 21.5)]
+    speeds = [run.statistics.fastest_rise for run in runs]
+    assert min(speeds) > 3.0
+    assert f"{speeds[0]:.1f}" != f"{speeds[1]:.1f}"
+    caution = birm3d.design_load(runs, draws=0).caution
+    assert caution.count("throw the vehicle up") == 1
+    assert f"throw the vehicle up at {max(speeds):.1f} m/s" in caution

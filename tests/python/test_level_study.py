@@ -145,3 +145,10 @@ def test_level_from_the_command_line(command, capsys) -> None:
     assert "test TB42" in capsys.readouterr().out
     assert command(*arguments, "--speed", "100km/h") == 2
     assert "--level has the standard's vehicles and speeds" in capsys.readouterr().err
+
+
+def test_a_prediction_calls_the_intrusion_as_the_table_of_a_run_does() -> None:
+    (first, *_) = birm3d.test_matrix("EN 1317 N1", barrier=Barrier.jersey(), mesh_density=0.1)
+    found = birm3d.rate(birm3d.predict(first, 8, progress=False), "EN 1317 N1").summary()
+    assert "vehicle intrusion, median" in found
+    assert "penetration, median" not in found

@@ -145,7 +145,7 @@ def test_figures_of_studies_name_their_scene(tmp_path: Path) -> None:
         posts.scene.vehicle.mass,
         "3 bollards, Ø 0.32 m, 1 m high, 0.8 m between axes \\(0.48 m clear\\)",
     )
-    for i, head in enumerate(head.replace("\n", " ") for head in heads):
+    for i, head in enumerate(re.sub(r"[\n\u00a0]", " ", head) for head in heads):
         if i == 1:  # of a file, which has no scene
             assert re.match(f"Laboratory block: {row}", head)
             continue

@@ -135,7 +135,7 @@ def test_what_it_tells() -> None:
     assert head.startswith("Passenger car, 1,814 kg, "), "whose bands these are, at which speed"
     assert head.endswith("; 80 % bands of 64 vehicles of the class")
     assert not any(line.strip().startswith("later_contacts") for line in text.splitlines())
-    assert "with a later contact, which counts for nothing here" in text
+    assert "with a contact after the values at separation" in text
     assert "drawn: scatter.front" in text
     (force,) = [line.split() for line in text.splitlines() if line.strip().startswith("peak_force_50ms")]
     assert force[-1] == "kN"

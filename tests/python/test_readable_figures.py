@@ -6,15 +6,18 @@ import base64
 import dataclasses
 import time
 
+import birm3d
 import numpy as np
 import pytest
 import shapely
-from birm3d import Barrier, LoadMap, Result, Settings, Simulation, Vehicle, scenes
+from birm3d import Barrier, Foundation, LoadMap, Result, Settings, Simulation, Vehicle, scenes
 from birm3d.barrier.surfaces import barrier_surfaces
 from birm3d.filters import cfc
 from birm3d.html_page.page_data import page_data
 from birm3d.html_page.replay import replay_data
 from birm3d.plotting.blows import readable_level
+from birm3d.plotting.figure import new_figure
+from birm3d.plotting.style import wrapped
 from birm3d.result.crushed_side import crushed_direction
 from birm3d.result.skin import skins_at
 from birm3d.vehicle.raster_outline import CELL
@@ -144,7 +147,9 @@ def test_long_load_maps_are_cropped_to_what_is_loaded() -> None:
         left, right = axes.get_xlim()  # from right to left
         assert (right, left) == pytest.approx((-50.0 + 19 * 0.5, -50.0 + 31 * 0.5))
     assert figure._suptitle is not None
-    assert "from -40.5 to -34.5 m; beyond, peaks are below 5 %" in figure._suptitle.get_text()
+    assert "from -40.5 to -34.5 m; beyond, peaks are below 5 %" in figure.get_suptitle().replace(
+        "\u00a0", " "
+    )
     whole = load_map(12, 4, 6.0, slice(1, 11)).plot()
     assert whole.axes[0].get_xlim() == pytest.approx((3.0, -3.0))
     assert whole._suptitle is not None
@@ -223,3 +228,28 @@ def test_outline_of_very_many_faces_is_by_cells() -> None:
     (ring,) = rings(silhouette(sheet, nodes, np.zeros(3), np.eye(3)))
     assert time.perf_counter() - started < 5.0
     assert shapely.Polygon(ring).symmetric_difference(shapely.box(0.0, 0.0, 4.0, 1.5)).area < 11.0 * CELL
+
+
+def test_titles_are_within_the_figure_and_keep_numbers_with_their_units() -> None:
+    """Those of posts that yield with their foundation are long; design loads cut theirs off on both sides."""
+    foundation = Foundation(moment=450e3, rotation_depth=0.4)
+    posts = Barrier.bollards(
+        count=7, diameter=0.273, wall_thickness=0.016, filling="concrete", foundation=foundation
+    )
+    result = Simulation(Vehicle.preset("van_3500", mesh_density=0.2), posts, 10.0).run()
+    loads = birm3d.design_load([result, result], draws=0)
+    figures = (result.plot(), result.plot_elements(), result.plot_plan(), loads.plot())
+    for figure in figures:
+        figure.canvas.draw()
+        assert figure._suptitle is not None
+        box = figure._suptitle.get_window_extent()
+        assert box.x0 >= 0.0
+        assert box.x1 <= figure.bbox.width
+        assert "0.273\u00a0m" in figure.get_suptitle()
+    narrow = new_figure(2.0, 2.0)
+    for n in range(1, 30):
+        text = wrapped(f"{'a ' * n}yields at 403 kN m, 64 km/h, 12 mm, 7 bollards", narrow)
+        lines = text.split("\n")
+        for whole in ("403\u00a0kN\u00a0m", "64\u00a0km/h", "12\u00a0mm"):
+            assert any(whole in line for line in lines)
+        assert "7 bollards" in text.replace("\n", " ")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -29,10 +29,21 @@ _BLOWS = (
     "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes: the upper "
     "ends of the bands of peak and equivalent static force rest on that blow and are too high."
 )
-_OUTSIDE = (
-    "On {elements} a value lies outside its band: the vehicles of the class differ from this one in the "
-    "median."
+_BLOWS_OF_PEAKS = (
+    "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes: the upper "
+    "ends of the bands of peak force rest on that blow and are too high."
 )
+_BELOW = (
+    "On {elements}, {values} below the band, which is unsafe: most vehicles of the class ask for more. "
+    "Design with the upper end of the band."
+)
+_ABOVE = "On {elements}, {values} above the band: most vehicles of the class ask for less."
+_NAMES = {
+    **{name: name.replace("_", " ") for name in BANDED},
+    "force_50ms": "50-ms force",
+}
+_SIDELESS = ("direction", "dynamic_load_factor")  # neither a greater nor a lesser one asks for more
+_LEAST_SHARE = 0.01  # elements that carry less than this share of the greatest load are not mentioned
 _FAILED = "{n} of {all} vehicles of the class could not be run and are not in the bands."
 
 
@@ -153,17 +164,40 @@ def bands_of(rows: Sequence[ElementDesign], seen: Iterable[tuple[int, Seen | Non
             struck.add(vehicle)
     whole = [runs for vehicle, runs in found.items() if vehicle not in failed]
     banded = tuple(_banded(row, [[run[i] for run in runs] for runs in whole]) for i, row in enumerate(rows))
-    counts = ((_BLOWS, len(struck)), (_FAILED, len(failed)))
+    by_statics = all(row.has_yielded for row in banded if row.touched)
+    counts = ((_BLOWS_OF_PEAKS if by_statics else _BLOWS, len(struck)), (_FAILED, len(failed)))
     cautions = [text.format(n=n, all=vehicles) for text, n in counts if n]
-    outside = [row.name for row in banded if _is_outside(row)]
-    return Bands(banded, cautions + ([_OUTSIDE.format(elements=", ".join(outside))] if outside else []))
+    return Bands(banded, cautions + list(_of_outside(banded)))
 
 
-def _is_outside(row: ElementDesign) -> bool:
-    return any(
-        not low - _ROUNDING <= getattr(row, name) <= high + _ROUNDING
-        for name, (low, high) in row.band.items()
-    )
+def _of_outside(rows: Sequence[ElementDesign]) -> Iterator[str]:
+    """Yield which values lie below or above their bands, once for all elements with the same ones."""
+    least = _LEAST_SHARE * max((row.peak_force for row in rows), default=0.0)
+    for text, sign in ((_BELOW, 1.0), (_ABOVE, -1.0)):
+        elements: dict[tuple[str, ...], list[str]] = {}
+        for row in rows:
+            names = tuple(_outside(row, sign)) if row.peak_force > least else ()
+            if names:
+                elements.setdefault(names, []).append(row.name)
+        for names, found in elements.items():
+            verb = "lies" if len(names) == 1 else "lie"
+            yield text.format(elements=", ".join(found), values=f"{_listed(names)} {verb}")
+
+
+def _outside(row: ElementDesign, sign: float) -> Iterator[str]:
+    """Yield the values of a row that lie below their bands (sign 1), or above them (sign -1)."""
+    for name, (low, high) in row.band.items():
+        if name in _SIDELESS:
+            continue
+        value, ends = getattr(row, name), (low, high)
+        if name == "impulse" and value < 0.0:  # away from the barrier: its size counts
+            value, ends = -value, (-high, -low)
+        if (ends[0] - value if sign > 0.0 else value - ends[1]) > _ROUNDING:
+            yield _NAMES[name]
+
+
+def _listed(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def _banded(row: ElementDesign, vehicles: Sequence[Sequence[ElementDesign]]) -> ElementDesign:

@@ -19,17 +19,12 @@ from ..study.predict import Prediction
 from ..study.table import Study
 from ..units import Quantity
 from .class_bands import Bands, Seen, bands_of, class_draws, governing_scenes, with_bands
-from .design_caution import has_blow, run_cautions
+from .design_caution import Doubts, has_blow, merged, run_cautions, run_doubts
 from .design_plan import DesignPlan, design_plan, predicted_scene
 from .design_remarks import design_cautions
 from .design_table import DesignLoad, LoadScene
-from .element_design import (
-    ElementDesign,
-    System,
-    element_design,
-    envelope,
-    peak_filter,
-)
+from .element_design import ElementDesign, System, element_design, peak_filter
+from .element_envelope import envelope
 
 __all__ = [
     "DesignLoadInterrupted",
@@ -59,6 +54,7 @@ class _Found(NamedTuple):
 
     rows: list[ElementDesign]
     cautions: dict[str, tuple[str, ...]]
+    doubts: Doubts
 
 
 @checked
@@ -87,6 +83,13 @@ def design_load(
     times the dynamic load factor. Above, it is the resistance R of the elastic-plastic system for which
     max|u| = ductility R / (m w^2). See :mod:`birm3d.assessment.oscillator`.
 
+    Of a post that yields in the run it is that of statics: the moment that the post resists over its arm. The
+    moment is that of tube or foundation. The arm is the height of the 50-ms force above the point about which
+    the post turns. That is the capacity design of foundations, as in
+    EN 1998-1, 4.4.2.6, without its factor for overstrength. The run has spent the yielding already, so that
+    natural period and ductility do not change this force. It is at most twice the peak force, as no single
+    pulse has a greater dynamic load factor.
+
     Parameters
     ----------
     cases
@@ -95,9 +98,10 @@ def design_load(
         with as many draws as it has.
     natural_period
         Of an element on its foundation [s]; at least 4 output intervals. ``None``: 0.1 s is assumed, and the
-        caution says so.
+        caution says so. It has no effect on posts that yield.
     ductility
-        Displacement over yield displacement that the element may reach, 1 (elastic) to 100.
+        Displacement over yield displacement that the element may reach, 1 (elastic) to 100; without effect on
+        posts that yield.
     damping
         Ratio to the critical one, >= 0 and < 1.
     offsets, impact_angles, impact_speeds
@@ -210,20 +214,27 @@ class _Envelope:
         )
         found = [self.found[run] for run in sorted(self.found)]
         rows = [row for one in found for row in one.rows]
-        cautions = design_cautions(load, plan, rows, (one.cautions for one in found))
+        of_runs = merged((one.cautions for one in found), (one.doubts for one in found))
+        cautions = design_cautions(load, plan, rows, of_runs)
         load.caution = " ".join(dict.fromkeys(cautions))
         return load
 
 
 def _look(result: Result, normal: Floats, system: System) -> _Found:
-    return _Found(_rows_of(result, normal, system), run_cautions(result))
+    return _Found(_rows_of(result, normal, system), run_cautions(result), run_doubts(result))
 
 
 def _rows_of(result: Result, normal: Floats, system: System) -> list[ElementDesign]:
     separation = result.metrics.get("time_of_separation", math.inf)
     barrier = result.scene.barrier
     weaker = barrier.weaker if isinstance(barrier, Bollards) else None
-    return [element_design(load, normal, system, separation, weaker) for load in result.element_loads]
+    yielded = np.zeros(len(result.element_loads), bool)
+    tilt = result.post_tilt
+    yielded[: tilt.shape[1]] = (tilt > 0.0).any(axis=0)
+    return [
+        element_design(load, normal, system, separation, weaker, bool(has))
+        for load, has in zip(result.element_loads, yielded, strict=True)
+    ]
 
 
 def _rows_and_blow(result: Result, normal: Floats, system: System) -> Seen:

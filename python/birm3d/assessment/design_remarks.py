@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
 from ..barrier.kinds import Bollards
-from .design_caution import barrier_caution, merged
+from .design_caution import barrier_caution
 from .design_plan import ASSUMED_PERIOD, DesignPlan
 from .design_table import DesignLoad
 from .element_design import ElementDesign
@@ -20,7 +20,7 @@ ASSUMED = f"The natural period of {ASSUMED_PERIOD:g} s is assumed: give that of 
 """Caution where no natural period was given."""
 _PERIODS, _POINTS = (0.03, 0.3), 31  # s: about a third to three times the period that is assumed
 _MOST_OF_ONE_PULSE = 2.0  # no single pulse has a greater dynamic load factor
-
+_CLOSE = 0.02  # of the spacing: offsets that are as near to a post or to the middle of a gap are there
 
 _ADDED = (
     "A dynamic load factor above 2 has one of two causes. Blows follow each other while the element swings; "
@@ -28,6 +28,12 @@ _ADDED = (
     "at distant places add up: give it segments."
 )
 
+
+_STATICS = (
+    "Where a post yields, natural period and ductility do not change the equivalent static force: the run "
+    "has spent the yielding already."
+)
+_LOWEST = "Of several scenes, that force comes from the one with the shortest arm."
 
 _LOWER_SPEEDS = (
     "A lower speed can load a post more: engine zones of light vehicles soften beyond 0.45 m of crush. Force "
@@ -39,7 +45,7 @@ def design_cautions(
     load: DesignLoad,
     plan: DesignPlan,
     rows: Sequence[ElementDesign],
-    of_runs: Iterable[Mapping[str, tuple[str, ...]]],
+    of_runs: Iterable[str],
 ) -> Iterator[str]:
     """Yield the cautions of an envelope in the order of reading; the same sentence may come twice.
 
@@ -50,17 +56,21 @@ def design_cautions(
     plan
         Its scenes.
     rows, of_runs
-        Rows and cautions of all runs that are finished.
+        Rows of all runs that are finished, and what their cautions are together.
     """
     yield from barrier_caution(plan.barrier)
-    if plan.period_is_assumed:
+    if any(row.has_yielded for row in load.rows):
+        yield _STATICS
+        if len(load.scenes) > 1:
+            yield _LOWEST
+    if plan.period_is_assumed and not all(row.has_yielded for row in load.rows if row.touched):
         yield ASSUMED
         yield from _of_other_periods(load)
-    yield from merged(of_runs)
+    yield from of_runs
     least = 0.01 * max(row.peak_force for row in rows)  # what carries less than 1 % is left out
     if any(row.dynamic_load_factor > _MOST_OF_ONE_PULSE for row in rows if row.peak_force > least):
         yield _ADDED
-    yield from _at_ends(load, plan.varied)
+    yield from _at_ends(load, plan)
     yield from _of_lower_speeds(plan)
 
 
@@ -88,10 +98,10 @@ def greatest_of_periods(load: DesignLoad) -> tuple[float, float] | None:
     """Return the greatest equivalent static force of the governing element [N], and its period [s].
 
     Over a third to three times the period that is assumed where none is given; ``None`` of one that nothing
-    touches, or where the rows are too far apart.
+    touches or that yields, or where the rows are too far apart.
     """
     row = load.governing
-    if row.load is None or _PERIODS[0] < LEAST_INTERVALS * row.load.interval:
+    if row.has_yielded or row.load is None or _PERIODS[0] < LEAST_INTERVALS * row.load.interval:
         return None
     periods = np.geomspace(*_PERIODS, _POINTS)
     forces = load.spectrum(periods)
@@ -99,15 +109,37 @@ def greatest_of_periods(load: DesignLoad) -> tuple[float, float] | None:
     return float(forces[at]), float(periods[at])
 
 
-def _at_ends(load: DesignLoad, varied: Mapping[str, Sequence[float]]) -> Iterator[str]:
+def _at_ends(load: DesignLoad, plan: DesignPlan) -> Iterator[str]:
     """Yield a sentence for each list whose first or last value governs: beyond it the load may be greater."""
     row = load.governing
     if not row.touched:
         return
     scene = load.scenes[row.scene["equivalent_static_force"]]
     for name in ("impact_offset", "impact_angle"):
-        values = varied.get(name, ())
+        values = plan.varied.get(name, ())
+        if name == "impact_offset" and _cover_the_row(values, plan):
+            continue
         if len(set(values)) > 1 and getattr(scene, name) in (min(values), max(values)):
             words = name.replace("_", " ")
             if not (name == "impact_angle" and scene.impact_angle == 90.0):
                 yield f"The governing load is at the end of the listed {words}s: add values beyond it."
+
+
+def _cover_the_row(offsets: Sequence[float], plan: DesignPlan) -> bool:
+    """Return whether all other offsets at a row of posts load it as some of these do, but at its ends.
+
+    They do over a whole spacing. Square to the row they do over half a spacing, between a post and the middle
+    of a gap: the rest is their mirror image.
+    """
+    barrier = plan.barrier
+    if not isinstance(barrier, Bollards) or barrier.count < 2 or barrier.rows > 1 or len(offsets) < 2:
+        return False
+    low, high = min(offsets), max(offsets)
+    shares = (high - low) / barrier.spacing
+    if shares >= 1.0 - _CLOSE:
+        return True
+    if shares < 0.5 - _CLOSE or any(scene.impact_angle != 90.0 for scene in plan.scenes):
+        return False
+    first = barrier.station() + barrier.places()[0][1]
+    at = 2.0 * (low - first) / barrier.spacing
+    return abs(at - round(at)) < 2.0 * _CLOSE

@@ -18,8 +18,15 @@ from ..base.frozen_mapping import FrozenMapping
 from ..io.atomic_write import whole_file
 from ..scene.scene import Scene
 from .criteria import table_html, table_text, without_sign_of_zero
-from .element_design import BANDED, ENVELOPED, ElementDesign, System, check_system, design_direction
-from .oscillator import resistance
+from .element_design import (
+    BANDED,
+    ENVELOPED,
+    ElementDesign,
+    System,
+    check_system,
+    design_direction,
+    static_force,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -181,7 +188,7 @@ class DesignLoad:
 
     @property
     def equivalent_static_force(self) -> Floats:
-        """For the natural period, ductility and damping [N]."""
+        """For the natural period, ductility and damping, or of posts that yield by statics [N]."""
         return self._column("equivalent_static_force")
 
     @property
@@ -210,9 +217,10 @@ class DesignLoad:
         return (
             f"Forces are horizontal, of walls across their line. Peak force: {self.peak_filter}. Force and "
             "moment: greatest 50-ms means; height is that of the 50-ms force above the element's foot, where "
-            "the moment is taken; direction that from the barrier's normal. Equivalent static force, at this "
+            f"the moment is taken; direction that from the barrier's normal. {_of_moments(self.rows)}"
+            "Equivalent static force, at this "
             f"height and in this direction: system with one degree of freedom, {kind}, natural period "
-            f"{self.natural_period:g} s{damped}, unfiltered load.{band}"
+            f"{self.natural_period:g} s{damped}, unfiltered load.{_of_yielding(self.rows)}{band}"
         )
 
     def _head(self) -> tuple[str, ...]:
@@ -235,7 +243,7 @@ class DesignLoad:
                 self._cell(row, "impulse"),
                 self._cell(row, "peak_force"),
                 self._cell(row, "force_50ms"),
-                f"{row.height:.2f}{_band(row, 'height', 1.0)}",
+                f"{row.height:.2f}{_band(row, 'height', 1.0)}" if row.height > 0.0 else "–",
                 f"{round(row.direction)}{_band(row, 'direction', 1.0)}",
                 self._cell(row, "moment"),
                 self._cell(row, "equivalent_static_force"),
@@ -267,7 +275,8 @@ class DesignLoad:
     ) -> Floats:
         """Return the equivalent static force of an element at other natural periods, shape (n,) [N].
 
-        The load is that of the scene which governs at the period of the table.
+        The load is that of the scene which governs at the period of the table. Of a post that yields there
+        the force is the same at all periods.
 
         Parameters
         ----------
@@ -290,9 +299,14 @@ class DesignLoad:
         system = System(self.natural_period, self.ductility if ductility is None else ductility, self.damping)
         for period in wanted.tolist():
             check_system(system._replace(natural_period=period), row.load.interval, "periods")
-        load = row.load.force[1:] @ design_direction(row.load, self.normal)
+        if row.has_yielded:
+            return np.full(len(wanted), row.equivalent_static_force)
+        direction = design_direction(row.load, self.normal)
         return np.array(
-            [resistance(load, row.load.interval, period, *system[1:]) for period in wanted.tolist()]
+            [
+                static_force(row.load, direction, system._replace(natural_period=period), row.yield_force)
+                for period in wanted.tolist()
+            ]
         )
 
     def to_dataframe(self) -> pd.DataFrame:
@@ -389,6 +403,20 @@ _UNITS = {
     "moment": "N m",
 }
 _UNITS |= {f"{name}_{end}": _UNITS[name] for name in BANDED if name in _UNITS for end in ("low", "high")}
+
+
+def _of_moments(rows: tuple[ElementDesign, ...]) -> str:
+    """Return that moments are not forces times heights, where one differs by more than a rounded number."""
+    if all(abs(row.moment - row.force_50ms * row.height) <= 0.02 * row.moment for row in rows):
+        return ""
+    return "The greatest moment is of an instant of its own: it is not the 50-ms force times its height. "
+
+
+def _of_yielding(rows: tuple[ElementDesign, ...]) -> str:
+    """Return how the static force of posts that have yielded is made; "" where there is none."""
+    if not any(row.has_yielded for row in rows):
+        return ""
+    return " Where a post yields it is the moment that the post resists over the arm of the 50-ms force."
 
 
 def _kilo(value: float) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ..barrier.yielding import Weaker
-from ..base.frozen_mapping import FrozenMapping
 from ..result.element_loads import ElementLoad, overturning, resultant_height
 from ..result.result import Result
 from ..scene.scene import Scene
@@ -29,9 +28,9 @@ __all__ = [
     "degrees_between",
     "design_direction",
     "element_design",
-    "envelope",
     "lateral_level",
     "peak_filter",
+    "static_force",
 ]
 
 Floats = npt.NDArray[np.float64]
@@ -45,6 +44,7 @@ BANDED = (*ENVELOPED, "height", "direction", "dynamic_load_factor")
 _CLASS = 60.0
 _MOST_DUCTILITY = 100.0
 _WINDOW = 0.05  # s
+_MOST_OF_ONE_PULSE = 2.0  # no single pulse has a greater dynamic load factor
 
 
 class System(NamedTuple):
@@ -79,15 +79,21 @@ class ElementDesign:
     force_50ms : float
         Greatest mean over 50 ms [N].
     height : float
-        Of ``force_50ms`` above the foot [m].
+        Of ``force_50ms`` above the foot [m]; 0 where it has none, see :class:`birm3d.ElementLoad`.
     direction : float
         Of ``force_50ms`` from the barrier's normal, positive to the left seen along it [deg].
     moment : float
         Greatest 50-ms mean of the overturning moment about the foot, at ground level [N m].
     equivalent_static_force : float
         Static force that asks as much of a system of the given period, ductility and damping as the
-        unfiltered load along ``direction`` [N]; it acts at ``height``. Of a post that yields the load counts
-        up to what its plastic moment stands at ``height``: more of it accelerates the post.
+        unfiltered load along ``direction`` [N]; it acts at ``height``. Of a post that has yielded it is
+        ``yield_force``, or twice ``peak_force`` if that is less. Of one that could yield and has not, the
+        system is elastic, and the force at most ``yield_force``.
+    yield_force : float
+        Of posts that yield: the moment that resists over the height of the 50-ms force above the point about
+        which the post turns, in the scene of ``equivalent_static_force`` [N]. Infinite of all others.
+    has_yielded : bool
+        Whether the post yields in that scene.
     scene : mapping of str to int
         Each of the values above that are enveloped -> number of the scene that it comes from.
     band : mapping of str to (float, float)
@@ -109,6 +115,8 @@ class ElementDesign:
     direction: float = 0.0
     moment: float = 0.0
     equivalent_static_force: float = 0.0
+    yield_force: float = math.inf
+    has_yielded: bool = False
     scene: Mapping[str, int] = field(default_factory=dict)
     band: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     touched: bool = False
@@ -139,6 +147,7 @@ class ElementDesign:
             **{name: getattr(self, name) for name in ("peak_force", "force_50ms", "height", "direction")},
             **{name: getattr(self, name) for name in ("moment", "equivalent_static_force")},
             "dynamic_load_factor": self.dynamic_load_factor,
+            "has_yielded": self.has_yielded,
             "scene": dict(self.scene),
             "band": {name: list(ends) for name, ends in self.band.items()},
         }
@@ -194,10 +203,12 @@ def element_design(
     system: System,
     separation: float = math.inf,
     weaker: Weaker | None = None,
+    has_yielded: bool = False,
 ) -> ElementDesign:
     """Return what an element has to carry in one scene; ``normal`` is that into the barrier, system in SI.
 
-    The impulse is that up to the time of ``separation`` [s]. ``weaker``: what gives way of posts that yield.
+    The impulse is that up to the time of ``separation`` [s]. ``weaker``: what gives way of posts that yield;
+    ``has_yielded``: whether this one does.
     """
     if not load.touched:
         return ElementDesign(load.index, load.name)
@@ -213,22 +224,39 @@ def element_design(
     rows = math.ceil(min(separation / load.interval, len(load.force)))
     impulse = load.interval * load.force[1 : rows + 1].sum(axis=0)
     height = float(resultant_height(force, moment, load.line)[row])
+    peak = float(lateral_level(filtered, load, normal).max())
     most = math.inf if weaker is None else weaker.greatest_load(height)
     return ElementDesign(
         load.index,
         load.name,
         impulse=float(impulse @ normal),
         impulse_vector=impulse,
-        peak_force=float(lateral_level(filtered, load, normal).max()),
+        peak_force=peak,
         force_50ms=float(level[row]),
         height=height,
         direction=degrees_between(normal, direction),
         moment=float(overturning(moment, load.line).max()),
-        equivalent_static_force=resistance(
-            np.clip(load.force[1:] @ direction, -most, most), load.interval, *system
+        equivalent_static_force=(
+            min(most, _MOST_OF_ONE_PULSE * peak)
+            if has_yielded
+            else static_force(load, direction, system, most)
         ),
+        yield_force=most,
+        has_yielded=has_yielded,
         touched=True,
     )
+
+
+def static_force(load: ElementLoad, direction: Floats, system: System, yield_force: float) -> float:
+    """Return the equivalent static force of an element that has not yielded [N].
+
+    Above a finite ``yield_force`` [N] it would yield: then the system is elastic, and that force is the most.
+    """
+    ductility = system.ductility if yield_force == math.inf else 1.0
+    force = resistance(
+        load.force[1:] @ direction, load.interval, system.natural_period, ductility, system.damping
+    )
+    return min(force, yield_force)
 
 
 def lateral_level(force: Floats, load: ElementLoad, normal: Floats) -> Floats:
@@ -242,35 +270,3 @@ def degrees_between(normal: Floats, direction: Floats) -> float:
     """Return the angle from a normal to a direction, seen from above, positive to the left [deg]."""
     across = normal[0] * direction[1] - normal[1] * direction[0]
     return math.degrees(math.atan2(across, float(normal @ direction)))
-
-
-def envelope(
-    rows: Mapping[int, ElementDesign], cases: Sequence[Result | Scene], quantile: float = 1.0
-) -> ElementDesign:
-    """Return of each value of one element the greatest over scenes, by their numbers, with its scene.
-
-    ``cases`` has all scenes, or the results that were given for them.
-    With a quantile below 1 the least value of a scene that this share of the scenes does not exceed.
-    """
-    place = math.ceil(quantile * len(rows) - 1e-9)  # 0.9 of 10 is the ninth, in spite of rounding
-    best = {name: _scene_at(rows, name, place) for name in ENVELOPED}
-    force = rows[best["force_50ms"]]
-    named = {name: scene for name, scene in best.items() if rows[scene].touched}
-    return ElementDesign(
-        force.index,
-        force.name,
-        **{name: getattr(rows[scene], name) for name, scene in best.items()},
-        impulse_vector=rows[best["impulse"]].impulse_vector,
-        height=force.height,
-        direction=force.direction,
-        scene=FrozenMapping(named),
-        touched=rows[best["equivalent_static_force"]].touched,
-        case=cases[best["equivalent_static_force"]],
-    )
-
-
-def _scene_at(rows: Mapping[int, ElementDesign], name: str, place: int) -> int:
-    """Return the scene with the value at a place of the values in order, the first of equal ones."""
-    sizes = {scene: abs(getattr(row, name)) for scene, row in rows.items()}
-    wanted = sorted(sizes.values())[place - 1]
-    return min(scene for scene, size in sizes.items() if size == wanted)

@@ -18,6 +18,7 @@ from ..study.whole_runs import look_at_study, require_found
 from .criteria import Criterion, criteria_html, criteria_text, foot_html, table_html, table_text
 from .rating import Rating
 from .rating_bands import BAND_HEAD, band_rows
+from .roadside import EN_1317, MASH
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -111,8 +112,9 @@ class RatingStudy:
             limit = f"{low:.1%} to {high:.1%} by {self.runs} runs"
             rows.append(Criterion(name, f"{share:.1%}", "", limit, None))
         low, median, high = quantiles(self.penetration, SHARE)
+        past = "vehicle intrusion" if self.ratings[0].standard in (MASH.name, EN_1317.name) else "penetration"
         rows.append(
-            Criterion("penetration, median", float(median), "m", f"80 %: {low:.2f} to {high:.2f} m", None)
+            Criterion(f"{past}, median", float(median), "m", f"80 %: {low:.2f} to {high:.2f} m", None)
         )
         return rows
 

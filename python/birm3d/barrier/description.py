@@ -22,7 +22,7 @@ class Size:
         Argument of ``Barrier.<kind>()``.
     quantity
         ``"length"``, ``"density"``, ``"pressure"``, ``"count"``, ``"flag"`` (the option says yes),
-        ``"choice"``, or ``"foundation"`` (a table of scene files, no option).
+        ``"choice"``, or ``"foundation"`` (a table of scene files, an option for each number).
     hint
         What ``--help`` says beside the kinds that have it.
     choices

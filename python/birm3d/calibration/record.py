@@ -64,7 +64,8 @@ class CalibrationRecord:
             return "every parameter is identified"
         if not missing:
             return _listed("every parameter has an interval, NOT all are identified by the data", self.doubts)
-        lines = _listed("NOT identified, no interval is given", missing)
+        count = f"{len(missing)} of {len(self.parameters)} parameters"
+        lines = _listed(f"NOT identified, without an interval: {count}", missing)
         return f"{lines}\n{_listed('intervals with doubts', self.doubts)}" if self.doubts else lines
 
     @property

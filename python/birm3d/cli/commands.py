@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import warnings
 from importlib import import_module
@@ -82,6 +83,10 @@ A module is loaded when its command runs: ``birm3d --help`` loads none.
 """
 
 
+# As birm3d.base.complaints.Complaints ends the warnings of studies.
+_ROWS = re.compile(r" \(row \d+(?:, the worst of ([\d,]+) in [\d,]+ runs: rows [^()]*)?\)$")
+
+
 class _Commands(click.Group):
     """The commands of COMMANDS."""
 
@@ -110,8 +115,15 @@ def _cli() -> None:
 
 
 def _show_warning(message: Warning | str, *_: object) -> None:
-    """Show a warning as one line, without the line of this package that it comes from."""
-    click.echo(f"birm3d: warning: {message}", err=True)
+    """Show a warning as one line, without the line of this package that it comes from.
+
+    Rows of a study are named by `birm3d sweep` alone, whose tables have them.
+    """
+    context = click.get_current_context(silent=True)
+    text = str(message)
+    if context is None or context.info_name != "sweep":
+        text = _ROWS.sub(lambda found: f" (in {found[1] or 1} of the runs)", text)
+    click.echo(f"birm3d: warning: {text}", err=True)
 
 
 # Python evaluates the class of an except clause only when there is an error. So imports come only then.

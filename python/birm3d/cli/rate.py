@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -19,12 +19,51 @@ if TYPE_CHECKING:
     Ratings = Sequence[Rating | RatingStudy | LevelStudy]
     Risk = OccupantRisk | RiskStudy | None
 
-__all__ = ["STANDARD_HELP", "assessed", "assessments_as_json", "print_assessments", "rate", "result_of"]
+__all__ = ["STANDARD_HELP", "Assessed", "assessed", "rate", "result_of"]
 
 STANDARD_HELP = (
     'Standard: "ASTM F2656", "ASTM F2656-07", "SD-STD-02.01", "IWA 14-1", "ISO 22343-1", "PAS 68", "MASH" or '
     '"EN 1317", these two also with a level or test ("MASH TL-3", "EN 1317 TB32"). Can be repeated.'
 )
+
+
+class Assessed(NamedTuple):
+    """Ratings and occupant risk of a run, and why standards do not rate it."""
+
+    ratings: Ratings
+    risk: Risk
+    not_rated: Mapping[str, str]
+    """Standard -> reason."""
+
+    def as_json(self) -> dict[str, Any]:
+        """Return all of it as plain values."""
+        found: dict[str, Any] = {}
+        if self.ratings:
+            found["ratings"] = [rating.to_dict() for rating in self.ratings]
+        if self.not_rated:
+            found["not_rated"] = dict(self.not_rated)
+        return found if self.risk is None else {**found, "occupant_risk": self.risk.to_dict()}
+
+    def print(self) -> None:
+        """Print ratings and occupant risk as tables of text."""
+        texts = [rating.summary() for rating in self.ratings]
+        if self.risk is not None:
+            texts.append(self.risk.summary())
+        if texts:
+            click.echo("\n\n".join(texts))
+
+    def tell_reasons(self) -> None:
+        """Print on stderr why standards do not rate the run.
+
+        Raises
+        ------
+        ValueError
+            With these reasons, if no standard rates it.
+        """
+        if self.not_rated and not self.ratings:
+            raise ValueError("; ".join(f"no rating by {name}: {why}" for name, why in self.not_rated.items()))
+        for name, why in self.not_rated.items():
+            click.echo(f"birm3d: no rating by {name}: {why}", err=True)
 
 
 @click.command()
@@ -72,10 +111,7 @@ def rate(
         if vehicle_class or reference_point or with_risk:
             raise click.UsageError("--level takes no --vehicle-class, --reference-point or --occupant-risk")
         levels = [_of_level(standard, draws, options) for standard in standards]
-        if as_json:
-            click.echo(json.dumps(assessments_as_json(levels, None), indent=2))
-        else:
-            print_assessments(levels, None)
+        _show(Assessed(levels, None, {}), as_json)
         return
     if draws:
         from ..study.predict import predict
@@ -83,11 +119,16 @@ def rate(
         result = predict(simulation_of(scene, options), draws, progress=True)
     else:
         result = result_of(scene, options)
-    ratings, risk = assessed(result, standards, with_risk, vehicle_class, reference_point)
+    found = assessed(result, standards, with_risk, vehicle_class, reference_point)
+    _show(found, as_json)
+    found.tell_reasons()
+
+
+def _show(found: Assessed, as_json: bool) -> None:
     if as_json:
-        click.echo(json.dumps(assessments_as_json(ratings, risk), indent=2))
+        click.echo(json.dumps(found.as_json(), indent=2))
     else:
-        print_assessments(ratings, risk)
+        found.print()
 
 
 def _of_level(standard: str, draws: int, options: dict[str, Any]) -> Rating | LevelStudy:
@@ -143,19 +184,31 @@ def assessed(
     with_risk: bool,
     vehicle_class: str | None = None,
     reference_point: str | None = None,
-) -> tuple[Ratings, Risk]:
-    """Return the ratings of a run by some standards, and its occupant risk where that is asked for."""
+) -> Assessed:
+    """Return the ratings of a run by some standards, and its occupant risk where that is asked for.
+
+    Raises
+    ------
+    ValueError
+        If a standard is not known, or the reference point is no point.
+    """
     if not standards and not with_risk:
-        return [], None
+        return Assessed([], None, {})
     from ..assessment import occupant_risk
     from ..assessment import rate as rate_result
+    from ..assessment.rate import split_standard
 
     point = None if reference_point is None else _point(reference_point)
-    ratings = [
-        rate_result(result, standard, vehicle_class=vehicle_class, reference_point=point)
-        for standard in standards
-    ]
-    return ratings, occupant_risk(result) if with_risk else None
+    for standard in standards:
+        split_standard(standard)
+    ratings: list[Rating | RatingStudy] = []
+    not_rated: dict[str, str] = {}
+    for standard in standards:
+        try:
+            ratings.append(rate_result(result, standard, vehicle_class=vehicle_class, reference_point=point))
+        except ValueError as reason:  # as of a vehicle that the standard does not know
+            not_rated[standard] = str(reason)
+    return Assessed(ratings, occupant_risk(result) if with_risk else None, not_rated)
 
 
 def _point(text: str) -> str | list[float]:
@@ -166,17 +219,3 @@ def _point(text: str) -> str | list[float]:
         return [float(part) for part in parts]
     except ValueError as error:
         raise ValueError(f"--reference-point must be a name or x,y,z in m, got {text!r}") from error
-
-
-def assessments_as_json(ratings: Ratings, risk: Risk) -> dict[str, Any]:
-    """Return ratings and occupant risk as plain values."""
-    found: dict[str, Any] = {"ratings": [rating.to_dict() for rating in ratings]} if ratings else {}
-    return found if risk is None else {**found, "occupant_risk": risk.to_dict()}
-
-
-def print_assessments(ratings: Ratings, risk: Risk) -> None:
-    """Print ratings and occupant risk as tables of text."""
-    texts = [rating.summary() for rating in ratings]
-    if risk is not None:
-        texts.append(risk.summary())
-    click.echo("\n\n".join(texts))

@@ -12,7 +12,7 @@ from .. import units
 from ..io.atomic_write import whole_file
 from ..result.summary import ELEMENT_COLUMNS, element_rows, elements_in_si, outcome_rows
 from .files import CAPSULE, GLTF, HTML, LOAD_MAP, MOVIE, PICTURE, RESULT, TABLE, VTK
-from .rate import STANDARD_HELP, assessed, assessments_as_json, print_assessments
+from .rate import STANDARD_HELP, assessed
 from .scene import scene_options, simulation_of
 from .table import print_table
 
@@ -57,13 +57,12 @@ def run(
     """Run one crash: a SCENE file, or the options --vehicle and --speed."""
     simulation = simulation_of(scene, options)
     result = simulation.run(progress=True)
-    ratings, risk = assessed(result, standards, with_risk)
+    found = assessed(result, standards, with_risk)
     if as_json:
-        click.echo(json.dumps({**_as_json(result), **assessments_as_json(ratings, risk)}, indent=2))
+        click.echo(json.dumps({**_as_json(result), **found.as_json()}, indent=2))
     else:
         _print_outcome(result)
-        if ratings or risk is not None:
-            print_assessments(ratings, risk)
+        found.print()
     if with_report:
         click.echo(result.report(), err=as_json)
     if csv_path is not None:
@@ -87,6 +86,7 @@ def run(
         if path is not None:
             write(path)
             click.echo(f"{name}: {path}", err=True)
+    found.tell_reasons()
 
 
 def _write_load_map(result: Result, path: Path) -> None:

@@ -48,6 +48,13 @@ class KindChoice(click.Choice):  # type: ignore[type-arg,unused-ignore]
             self.fail(error.message + did_you_mean(str(value), map(str, self.choices), " Did"), param, ctx)
 
 
+_FOUNDATION = (
+    ("moment", "moment", 'that it resists about its centre of rotation: "450 kN m".'),
+    ("rotation_depth", "length", "centre of rotation below the ground.  [default: 0 m]"),
+    ("mass", "mass", "what turns below the ground, for its inertia.  [default: 0 kg]"),
+)
+"""Arguments of :class:`birm3d.Foundation`: name, quantity, help."""
+
 _TYPES: dict[str, Any] = {
     "count": int,
     "length": QuantityOption("length"),
@@ -60,15 +67,19 @@ def _size_options() -> Iterator[Callable[[Command], Command]]:
     """Yield the options of all sizes that kinds of barriers have."""
     sizes = {size.name: size for kind in KINDS.values() for size in kind.sizes}
     for name, size in sizes.items():
-        if size.quantity == "foundation":  # several numbers: of scene files
-            continue
         titles = [kind.title for kind in KINDS.values() if any(other.name == name for other in kind.sizes)]
         hints = dict.fromkeys(
             other.hint for kind in KINDS.values() for other in kind.sizes if other.name == name and other.hint
         )
         text = f"Of {' or '.join(titles)}{''.join(', ' + hint for hint in hints)}."
         option = f"--{name.replace('_', '-')}"
-        if size.quantity == "flag":
+        if size.quantity == "foundation":
+            for part, quantity, meaning in _FOUNDATION:
+                text = f"Foundation of {' or '.join(titles)} that yield: {meaning}"
+                yield click.option(
+                    f"{option}-{part.replace('_', '-')}", type=QuantityOption(quantity), help=text
+                )
+        elif size.quantity == "flag":
             yield click.option(option, is_flag=True, default=None, help=text)
         elif size.quantity == "choice":
             yield click.option(option, type=click.Choice(size.choices), help=text)
@@ -204,13 +215,26 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
 def barrier_of(options: dict[str, Any]) -> Barrier | None:
     """Return the barrier of the options of :func:`scene_options`."""
     from ..barrier.barrier import Barrier
+    from ..barrier.yielding import Foundation
 
     kind = options["barrier"]
     names_of = {name: [size.name for size in made.sizes] for name, made in KINDS.items()}
     known = dict.fromkeys(name for names in names_of.values() for name in names)
-    sizes = {name: options[name] for name in known if options.get(name) is not None}
+    sizes: dict[str, Any] = {name: options[name] for name in known if options.get(name) is not None}
+    foundation = {
+        part: options[f"foundation_{part}"]
+        for part, _, _ in _FOUNDATION
+        if options.get(f"foundation_{part}") is not None
+    }
+    if foundation:
+        sizes["foundation"] = foundation
     for name in sizes:
         if name not in names_of.get(kind, ()):
+            option = name if name != "foundation" else f"foundation_{next(iter(foundation))}"
             kinds = " or ".join(other for other, names in names_of.items() if name in names)
-            raise click.UsageError(f"--{name.replace('_', '-')}: of {kinds}, not of {kind}")
+            raise click.UsageError(f"--{option.replace('_', '-')}: of {kinds}, not of {kind}")
+    if foundation:
+        if "moment" not in foundation:
+            raise click.UsageError("--foundation-moment is missing: a foundation must have one")
+        sizes["foundation"] = Foundation(**foundation)
     return None if kind == "none" else getattr(Barrier, kind)(friction=options["friction"], **sizes)

@@ -262,7 +262,7 @@ def _print_summary(study: Study) -> None:
     for outcome, n in study.outcomes.items():
         counts.add_row(outcome_words(outcome), str(n))
     for one in counted(study):
-        counts.add_row(f"of any outcome, with {one.words}", str(one.runs))
+        counts.add_row(f"any outcome, with {one.words}", str(one.runs))
     print_table(counts)
 
 

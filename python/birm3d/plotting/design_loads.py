@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from ..result.element_loads import overturning
 from ..signals.filters import moving_average
 from .blows import name_cut_peaks, readable_level
 from .figure import new_figure
-from .style import BLUE, DASH_DOT, DASHED, GREEN, ORANGE, RED, filtered, legend, prepare
+from .style import BLUE, DASH_DOT, DASHED, DOTTED, GREEN, ORANGE, RED, filtered, legend, prepare, wrapped
 
 if TYPE_CHECKING:
     from ..assessment.design_table import DesignLoad
@@ -37,8 +38,9 @@ def plot_design_load(loads: DesignLoad) -> Figure:
     """Return loads by element, force and moment of the governing one, and its response spectrum.
 
     The governing element has the greatest equivalent static force. Its histories are those of the scene that
-    this force comes from. Unfiltered lines are thin. A blow of a few milliseconds that would flatten the rest
-    is cut off, and its peak is written beside it. At most 12 elements are drawn, the most loaded ones.
+    this force comes from; a value of the table from another scene is a line. Unfiltered lines are thin. A
+    blow of a few milliseconds that would flatten the rest is cut off, and its peak is written beside it. At
+    most 12 elements are drawn, the most loaded ones.
 
     Raises
     ------
@@ -57,15 +59,20 @@ def plot_design_load(loads: DesignLoad) -> Figure:
     degrees = degrees_between(loads.normal, direction)
     for axes in (force, moment):
         axes.set_xlim(0.0, end)
-    _force(force, row, row.load.force @ direction, row.load.interval, degrees)
-    _moment(moment, row, row.load)
+    of_other = {
+        name: f"in scene {row.scene[name]}"
+        for name in ("force_50ms", "moment")
+        if row.scene[name] != _scene(row)
+    }
+    _force(force, row, row.load.force @ direction, row.load.interval, degrees, of_other.get("force_50ms"))
+    _moment(moment, row, row.load, of_other.get("moment"))
     for axes in (force, moment):
         axes.set_xlabel("time [ms]")
     _spectrum(spectrum, loads, row)
     for axes in (bars, force, moment, spectrum):
         legend([axes])
     scene = "" if len(loads.scenes) == 1 else f"\nhistories of {loads.scenes[_scene(row)]}"
-    figure.suptitle(f"{loads.title}{scene}", fontsize="medium")
+    figure.suptitle(wrapped(f"{loads.title}{scene}", figure), fontsize="medium")
     return figure
 
 
@@ -99,25 +106,28 @@ def _bars(axes: Axes, loads: DesignLoad) -> None:
     axes.set_title("Horizontal force on each element", fontsize="medium")
 
 
-def _force(axes: Axes, row: ElementDesign, force: Floats, interval: float, degrees: float) -> None:
+def _force(
+    axes: Axes, row: ElementDesign, force: Floats, interval: float, degrees: float, other: str | None
+) -> None:
     ms = np.arange(len(force), dtype=np.float64) * (interval * 1e3)
     smooth, name = filtered(force, 60, interval)
     mean = moving_average(force, 0.05, interval)
     axes.plot(ms, force / 1e3, color=ORANGE, ls="-", lw=0.5, alpha=0.5, zorder=1.5)
     axes.plot(ms, smooth / 1e3, color=ORANGE, ls="-", lw=2.2, label=name)
     axes.plot(ms, mean / 1e3, color=BLUE, ls=DASHED, lw=1.8, label="mean over the last 50 ms")
-    _mark(axes, ms, mean / 1e3, "kN")
+    _mark(axes, ms, mean / 1e3, "kN", row.force_50ms / 1e3, other)
     level = row.equivalent_static_force / 1e3
     axes.axhline(level, color=RED, ls=DASH_DOT, lw=1.4, label=f"equivalent static, {level:,.0f} kN")
     shown = readable_level(smooth, interval)
-    top = max(min(float(smooth.max()), shown), float(mean.max()), row.equivalent_static_force) / 1e3
+    levels = (float(mean.max()), row.force_50ms, row.equivalent_static_force)
+    top = max(min(float(smooth.max()), shown), *levels) / 1e3
     axes.set_ylim(min(0.0, 1.1 * max(float(smooth.min()), -shown) / 1e3), 1.25 * top)
     axes.set_ylabel("force [kN]")
     name_cut_peaks([(axes, [(ms, smooth / 1e3)], "kN")])
     axes.set_title(f"{row.name}: force at {round(degrees)}° from the normal", fontsize="medium")
 
 
-def _moment(axes: Axes, row: ElementDesign, load: ElementLoad) -> None:
+def _moment(axes: Axes, row: ElementDesign, load: ElementLoad, other: str | None) -> None:
     ms = np.arange(len(load.moment), dtype=np.float64) * (load.interval * 1e3)
     smooth, name = filtered(load.moment, 60, load.interval)
     mean = moving_average(load.moment, 0.05, load.interval)
@@ -125,19 +135,30 @@ def _moment(axes: Axes, row: ElementDesign, load: ElementLoad) -> None:
     axes.plot(ms, curves[0], color=ORANGE, ls="-", lw=0.5, alpha=0.5, zorder=1.5)
     axes.plot(ms, curves[1], color=ORANGE, ls="-", lw=2.2, label=name)
     axes.plot(ms, curves[2], color=BLUE, ls=DASHED, lw=1.8, label="mean over the last 50 ms")
-    _mark(axes, ms, curves[2], "kN m")
+    _mark(axes, ms, curves[2], "kN m", row.moment / 1e3, other)
     shown = readable_level(curves[1], load.interval)
-    axes.set_ylim(0.0, 1.25 * max(min(float(curves[1].max()), shown), float(curves[2].max())))
+    top = max(min(float(curves[1].max()), shown), float(curves[2].max()), row.moment / 1e3)
+    axes.set_ylim(0.0, 1.25 * top)
     axes.set_ylabel("moment [kN m]")
     name_cut_peaks([(axes, [(ms, curves[1])], "kN m")])
     axes.set_title(f"{row.name}: overturning moment about its foot", fontsize="medium")
 
 
-def _mark(axes: Axes, ms: npt.NDArray[np.floating[Any]], curve: Floats, unit: str) -> None:
+def _mark(
+    axes: Axes, ms: npt.NDArray[np.floating[Any]], curve: Floats, unit: str, design: float, other: str | None
+) -> None:
+    """Mark the greatest value with the number of the table.
+
+    Where that comes from another scene it is a line of its own, and the curve has no number.
+    """
+    if other is not None:
+        label = f"50-ms mean {other}, {design:,.0f} {unit}"
+        axes.axhline(design, color=BLUE, ls=DOTTED, lw=1.4, label=label)
+        return
     at = int(np.argmax(curve))
     axes.plot([ms[at]], [curve[at]], "o", color=BLUE, ms=6, mec="w", ls="none", zorder=6)
     axes.annotate(
-        f"{curve[at]:,.0f} {unit}",
+        f"{design:,.0f} {unit}",
         (ms[at], curve[at]),
         (6.0, 6.0),
         textcoords="offset points",
@@ -152,8 +173,9 @@ def _spectrum(axes: Axes, loads: DesignLoad, row: ElementDesign) -> None:
     interval = row.load.interval
     low = max(_PERIODS[0], LEAST_INTERVALS * interval)
     own = loads.natural_period
-    wanted = [(1.0, GREEN, "elastic", _POINTS)]
-    if loads.ductility > 1.0:
+    label = "moment that the post resists" if row.has_yielded else "elastic"
+    wanted = [(1.0, GREEN, label, _POINTS)]
+    if loads.ductility > 1.0 and row.yield_force == math.inf:
         wanted.append((loads.ductility, RED, f"ductility {loads.ductility:g}", _SOFT_POINTS))
     for ductility, color, label, points in wanted:
         periods = np.unique([own, *np.geomspace(min(low, own), max(_PERIODS[1], own), points)])

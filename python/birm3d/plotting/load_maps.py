@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from .figure import new_figure
+from .style import wrapped
 
 if TYPE_CHECKING:
     from ..result.load_map import LoadMap
@@ -56,7 +57,7 @@ def plot_load_map(map_: LoadMap, time: float | None = None) -> Figure:
     text = map_.title
     if columns != slice(0, len(map_.lateral) - 1):
         text += f"\nfrom {lateral[0]:.1f} to {lateral[-1]:.1f} m; beyond, peaks are below 5 % of the greatest"
-    figure.suptitle(text, fontsize="medium")
+    figure.suptitle(wrapped(text, figure), fontsize="medium")
     return figure
 
 

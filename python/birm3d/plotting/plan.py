@@ -23,7 +23,7 @@ from ..vehicle.silhouette import rings, silhouette
 from ..vehicle.unit_shapes import UnitShape, unit_shapes
 from .figure import new_figure
 from .plan_axes import PlanAxes, is_oblique
-from .style import BLUE, RED, prepare, title
+from .style import BLUE, RED, prepare, title, wrapped
 
 if TYPE_CHECKING:
     from ..result.result import Result
@@ -103,7 +103,8 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
     fit_to(figure, axes, _cropped(np.vstack(drawn), places), _WIDTH, _HEIGHTS, room=_TEXTS)
     flat = figure.get_figheight() - _TEXTS < _FLAT
     axes.set_ylabel(view.labels[1].replace("front of the", "front of\nthe") if flat else view.labels[1])
-    figure.suptitle(f"{title(result, figure)}\n{_outcome(result)}", fontsize="medium")
+    told = wrapped(_outcome(result), figure)
+    figure.suptitle(f"{title(result, figure)}\n{told}", fontsize="medium")
     figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize="small", borderaxespad=0.0)
     return figure
 

@@ -61,7 +61,7 @@ def plot_runs(results: Sequence[Result], channels: Sequence[str], labels: Sequen
         axes.set_xlim(0.0, max(float(result.time[-1]) for result in results) * 1e3)
     handles, shown = panels[0].get_legend_handles_labels()
     figure.legend(handles, shown, loc="outside lower center", ncols=2, frameon=False, fontsize="small")
-    figure.suptitle(common)
+    figure.suptitle(wrapped(common, figure))
     return figure
 
 

@@ -69,6 +69,9 @@ WIDTHS = (3.2, 2.0, 1.5, 1.8, 1.2, 1.2, 1.0, 1.0)
 # Of a legend's text: mean width of a letter, of a line sample with its gaps, and height of a row, points.
 _LETTER, _SAMPLE, _ROW = 4.7, 42.0, 13.5
 _LETTERS_PER_INCH = 11.2  # of a title in one line
+_UNITS = "N|kN|MN|J|kJ|MJ|Pa|kPa|MPa|kg|t|lb|mm|cm|m|in|ft|ms|s|km/h|m/s|mph|g|deg|°|%"
+_BEFORE_UNIT = re.compile(rf"(?<=\d) (?=(?:{_UNITS})(?![\w/]))")
+_WITHIN_UNIT = re.compile(r"(?<=N) (?=[ms]\b)")
 
 
 def prepare(*panels: Axes) -> None:
@@ -206,10 +209,21 @@ def legend(axes: Sequence[Axes]) -> None:
 
 
 def wrapped(text: str, figure: Figure) -> str:
-    """Return a title in as many lines as the figure's width asks for; the barrier begins a line."""
+    """Return a title in as many lines as the figure's width asks for; the barrier begins a line.
+
+    Lines are broken between words. A number stays with its unit, by a non-breaking space.
+    """
     letters = round(_LETTERS_PER_INCH * figure.get_figwidth())
-    parts = [text] if len(text) <= letters else re.split("(?<=:) ", text, maxsplit=1)
-    return "\n".join(line for part in parts for line in textwrap.wrap(part, letters))
+    lines = []
+    for line in text.splitlines():
+        parts = [line] if len(line) <= letters else re.split("(?<=:) ", line, maxsplit=1)
+        lines += [broken for part in parts for broken in textwrap.wrap(_with_units(part), letters)]
+    return "\n".join(lines)
+
+
+def _with_units(text: str) -> str:
+    """Return a text with non-breaking spaces between numbers and units, and within units."""
+    return _WITHIN_UNIT.sub("\u00a0", _BEFORE_UNIT.sub("\u00a0", text))
 
 
 def _columns(axes: Axes, labels: Sequence[str]) -> int:

@@ -6,6 +6,8 @@ import csv
 import io
 
 from ..assessment.design_caution import height_caution
+from ..barrier.barrier import Barrier
+from ..barrier.kinds import Bollards
 from ..result.barrier_fronts import front_of
 from ..result.element_loads import touched_elements
 from ..result.metrics import METRIC_UNITS
@@ -18,15 +20,27 @@ from .study_case import Case
 __all__ = ["load_section", "loads_csv", "metrics_csv"]
 
 _IMPULSE = "Impulse: until the vehicle leaves the barrier; later contacts are not in it."
-_RIGID = (
+_DESIGN_WITH = (
+    "A peak after CFC 60 may last some milliseconds: design with the 50-ms means or with a response of the "
+    "element. The file has the unfiltered peaks too."
+)
+_FIXED = (
     "The barrier is rigid: it takes the greatest force that the vehicle can press it with. A barrier that "
-    "gives way takes less force over a longer time. A peak after CFC 60 may last some milliseconds: design "
-    "with the 50-ms means or with a response of the element. The file has the unfiltered peaks too."
+    "gives way takes less force over a longer time."
+)
+_YIELDING = (
+    "The posts yield: {what} of {moment:,.0f} kN m limits the force, beside the inertia of the post. {more}"
+)
+_STEEL = "Steel that is stronger than nominal loads the foundation more."
+_SOIL = "Soil or steel that is stronger than given loads the post and its foundation more."
+_FREE = (
+    "The segments stand free: their inertia and the friction of their bases limit the force. The ground gets "
+    "no more than that friction."
 )
 
 _WHOLE_FORCE = (
     "Forces are magnitudes of the whole force, its vertical part included; those of the design loads are "
-    "horizontal."
+    "horizontal. Each greatest value is of an instant of its own: a moment is not a force times its height."
 )
 
 
@@ -42,10 +56,24 @@ def load_section(case: Case) -> Section:
         figure(case.result.plot_elements(), "Loads on the elements over time"),
         *_map_blocks(case.result),
         *_design_blocks(case),
-        *([Caution(_RIGID)] if case.result.scene.barrier.stands_free() is None else []),
+        Caution(f"{_gives_way(case.result.scene.barrier)} {_DESIGN_WITH}"),
         Items(links=(("The same table with all digits, SI", "loads.csv"),)),
     ]
     return Section("Loads on the barrier", "loads", blocks)
+
+
+def _gives_way(barrier: Barrier) -> str:
+    """Return what limits the force on a barrier: nothing, what its posts resist, or its inertia."""
+    if barrier.stands_free() is not None:
+        return _FREE
+    weaker = barrier.weaker if isinstance(barrier, Bollards) else None
+    if weaker is None:
+        return _FIXED
+    turns = weaker.foundation_turns
+    what = "the moment of their foundation" if turns else "the plastic moment of their tubes"
+    return _YIELDING.format(
+        what=what, moment=weaker.posts.plastic_moment / 1e3, more=_SOIL if turns else _STEEL
+    )
 
 
 def _map_blocks(result: Result) -> list[Block]:

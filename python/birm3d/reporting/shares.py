@@ -54,4 +54,4 @@ def _rows(study: Study) -> Iterator[tuple[str, str, str]]:
     for word, n in study.outcomes.items():
         yield outcome_words(word), *cells_of_share(study, n, done)
     for one in counted(study):
-        yield f"of any outcome, with {one.words}", *cells_of_share(study, one.runs, one.n)
+        yield f"any outcome, with {one.words}", *cells_of_share(study, one.runs, one.n)

@@ -7,9 +7,8 @@ import re
 from collections.abc import Iterator, Sequence
 from statistics import median
 
-from ..assessment import DesignLoad, ElementDesign, OccupantRisk, Rating
+from ..assessment import DesignLoad, OccupantRisk, Rating
 from ..assessment.criteria import Criterion
-from ..assessment.design_remarks import ASSUMED, greatest_of_periods
 from ..assessment.rating_caution import model_cautions
 from ..assessment.vehicles import HEAVY_KG
 from ..result.element_loads import touched_elements
@@ -21,6 +20,7 @@ from .class_bands import band_of, headline_table
 from .evidence import beyond_tests
 from .given_tests import Compared, errors
 from .numbers import percent
+from .static_force import band_of_design, made_by
 from .study_case import ROADSIDE, Case, is_oblique
 from .study_verdict import study_answers, study_table
 from .uncertainty import computing_error
@@ -112,14 +112,12 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
             f"{_load_band(case)}",
         )
     if isinstance(case.design_loads, DesignLoad) and loads:
-        row, period = case.design_loads.governing, case.design_loads.natural_period
-        assumed = _assumed(case.design_loads)
+        row = case.design_loads.governing
         alone = "this run alone, " if case.study is not None and len(case.design_loads.scenes) == 1 else ""
         yield (
             "What does its foundation have to carry?",
             f"{alone}{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
-            f"{row.height:.2f} m, natural period {period:g} s{assumed}, ductility "
-            f"{case.design_loads.ductility:g}{_design_band(row)}",
+            f"{row.height:.2f} m, {made_by(case.design_loads)}{band_of_design(row)}",
         )
     yield "Would occupants be at risk?", _risk_line(case)
     yield "How well is it computed?", _computed_line(case)
@@ -213,22 +211,6 @@ def _load_band(case: Case) -> str:
     if isinstance(case.bands, str) or name not in case.bands.prediction.low:
         return ""
     return f"; 80 % of the class: {band_of(case.bands, name, 1e3, ',.0f')} kN on the most loaded element"
-
-
-def _assumed(loads: DesignLoad) -> str:
-    """Return that the period is assumed, and what another one may ask for."""
-    if ASSUMED not in loads.caution:
-        return ""
-    found = greatest_of_periods(loads)
-    more = "" if found is None else f"; up to {found[0] / 1e3:,.0f} kN at {found[1]:.2g} s"
-    return f" (assumed{more})"
-
-
-def _design_band(row: ElementDesign) -> str:
-    if "equivalent_static_force" not in row.band:
-        return ""
-    low, high = (end / 1e3 for end in row.band["equivalent_static_force"])
-    return f"; 80 % of the class: {low:,.0f} to {high:,.0f} kN"
 
 
 def _risk_line(case: Case) -> str:

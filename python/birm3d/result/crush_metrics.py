@@ -108,8 +108,8 @@ CRUSH_METRICS: Mapping[str, Metric] = {
     "max_overturning_ratio": Metric(
         unit="",
         group="barrier",
-        meaning="greatest of Result.overturning_ratio; above 1 a segment would begin to tip, which is left "
-        "out; absent without gravity",
+        meaning="greatest of Result.overturning_ratio, of 50-ms means; above 1 a segment would begin to tip, "
+        "which is left out; absent without gravity",
         needs="segments",
         value=made.max_overturning_ratio,
         of="segments",

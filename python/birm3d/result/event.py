@@ -36,14 +36,16 @@ The mass centre is that of the leading unit.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .metric_functions import angle_of_exit
-from .metrics import METRIC_UNITS, compute_metrics
+from .metrics import ALONG_LINE, METRIC_UNITS, METRICS, compute_metrics
 from .record import RunRecord
+from .run_values import parts_of
 
 if TYPE_CHECKING:
     from .. import _core
@@ -110,7 +112,6 @@ _TIPPED = 60.0  # deg; beyond, a leading unit may be the one whose up axis point
 _MANNERS = {
     "rests_untouched": "it came to rest before it reached the barrier",
     "rests": "it came to rest at the barrier",
-    "slow": "it was slower than a tenth of its impact speed when the run ended, at the barrier",
     "rebounds": "it rebounded from the barrier",
     "leaves": "it left along the barrier",
     "slides_to_end": "it slid along the barrier to its end and left",
@@ -119,6 +120,14 @@ _MANNERS = {
     "over": "it went over the top of the barrier",
 }
 _CLEARLY_NEARING = -1.0  # deg, of the path at the last contact
+_PARTS = {
+    "segments": "no segments stand free",
+    "posts": "no posts yield",
+    "moving": "nothing of the barrier moves",
+    "joint": "the vehicle is one unit",
+    "sliding": "the vehicle has no load bed that slides",
+}
+"""Part of a scene that a metric needs -> what is said where there is none."""
 _AT_SEPARATION = ("time_of_separation", "exit_speed", "exit_angle", "restitution")
 
 
@@ -133,9 +142,11 @@ def outcome_detail(result: RunRecord) -> str:
     if event.manner == "no_barrier":
         return f"there is no barrier{': it rolled over' if rolled else ''}"
     touched = bool(result._history.elements)
-    if event.manner == "moving":
+    if event.manner in ("moving", "slow"):
         where = "in contact with" if event.touching else "clear of" if touched else "not yet at"
-        return f"it was still moving when the run ended, {where} the barrier{rolled}"
+        pace = "slower than a tenth of its impact speed" if event.manner == "slow" else "still moving"
+        nearing = _nearing(event, result.scene.barrier) if event.manner == "slow" else ""
+        return f"it was {pace} when the run ended, {where} the barrier{nearing}{rolled}"
     if event.manner in ("between", "beside"):
         past = "between two elements of the barrier" if event.manner == "between" else "the barrier's end"
         return f"it passed {past}, {'touching it' if touched else 'untouched'}{rolled}"
@@ -209,4 +220,12 @@ def _why_absent(result: RunRecord, name: str) -> str:
             return f"{name}: the vehicle did not separate from the barrier for good: {outcome_detail(result)}"
         if name == "exit_angle":
             return f"{name}: the vehicle does not leave on the traffic side: {outcome_detail(result)}"
+    part = METRICS[name].of
+    if part in _PARTS and part not in parts_of(scene):
+        return f"{name}: {_PARTS[part]}"
+    if name == "vehicle_penetration" and abs(math.sin(math.radians(scene.impact_angle))) < ALONG_LINE:
+        return (
+            f"{name}: the path runs along the barrier's line (impact_angle {scene.impact_angle:g}), so that "
+            "nothing gets past it; max_displacement is the travel towards its end"
+        )
     return f"{name}: the run does not have it, see birm3d.metrics.compute_metrics"

@@ -112,9 +112,9 @@ _MOTION_METRICS: Mapping[str, Metric] = {
         needs="end",
         value=lambda run: float(run.event.later_contacts),
         shown=Shown(
-            "later contacts, which count for nothing above",
+            "contacts after the values at separation",
             ".0f",
-            counted="a later contact, which counts for nothing here",
+            counted="a contact after the values at separation",
         ),
     ),
     "wheel_climb": Metric(

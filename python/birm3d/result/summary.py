@@ -73,7 +73,7 @@ def element_rows(result: RunAnalysis) -> list[tuple[str, ...]]:
             load.name,
             f"{load.peak_force_cfc60 / 1e3:.0f}",
             f"{load.peak_force_50ms / 1e3:.0f}",
-            f"{load.height_at_peak:.2f}",
+            f"{load.height_at_peak:.2f}" if load.height_at_peak > 0.0 else "–",
             f"{load.peak_overturning_moment_50ms / 1e3:.0f}",
         )
         for load in touched_elements(result.element_loads)

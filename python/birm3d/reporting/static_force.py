@@ -1,0 +1,33 @@
+"""Words about the equivalent static force: what it is made from, and its band."""
+
+from __future__ import annotations
+
+from ..assessment.design_remarks import ASSUMED, greatest_of_periods
+from ..assessment.design_table import DesignLoad
+from ..assessment.element_design import ElementDesign
+
+__all__ = ["band_of_design", "made_by"]
+
+
+def made_by(loads: DesignLoad) -> str:
+    """Return what the equivalent static force of the governing element is made from."""
+    if loads.governing.has_yielded:
+        return "from the moment that the post resists; what is stronger than given asks for more"
+    return f"natural period {loads.natural_period:g} s{_assumed(loads)}, ductility {loads.ductility:g}"
+
+
+def _assumed(loads: DesignLoad) -> str:
+    """Return that the period is assumed, and what another one may ask for."""
+    if ASSUMED not in loads.caution:
+        return ""
+    found = greatest_of_periods(loads)
+    more = "" if found is None else f"; up to {found[0] / 1e3:,.0f} kN at {found[1]:.2g} s"
+    return f" (assumed{more})"
+
+
+def band_of_design(row: ElementDesign) -> str:
+    """Return the band of the force over the class, as the end of a line; "" where there is none."""
+    if "equivalent_static_force" not in row.band:
+        return ""
+    low, high = (end / 1e3 for end in row.band["equivalent_static_force"])
+    return f"; 80 % of the class: {low:,.0f} to {high:,.0f} kN"
