@@ -1298,7 +1298,7 @@ class Unit:
         """
         mass: kg. inertia: shape (3, 3), kg m^2. wheels: shape (w, 4), centre and radius, m.
         breakaway: shape (w, 2), load at which each wheel gives way, N, and how far it is then pushed up, m.
-        suspension: shape (w, 4), stiffness, N/m (0: fixed to the body), damping, N s/m, compression at rest, m, travel from there to the bump stop, m.
+        suspension: shape (w, 5), stiffness, N/m (0: fixed to the body), damping, N s/m, compression at rest, m, travel from there to the bump stop, m, stiffness against roll over that of springs at the wheels.
         tires: shape (w, 4), time in which a wheel with free steering follows its direction of travel, s (inf: it does not steer), radius of the tread's cross-section, m, slip angle per tilt, rolling resistance per load.
         origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not move.
         mass_center_height: m above the ground. offset: shape (3,), m, of the mass centre from the vehicle's reference point along the ground.
