@@ -38,8 +38,13 @@ def test_a_vehicle_that_creeps_ends_its_run(name: str) -> None:
     assert result.metrics["end_time"] < 4.0
     assert (long.outcome, long.outcome_detail) == (result.outcome, result.outcome_detail)
     assert result.metrics.keys() == long.metrics.keys()
-    for metric in ("peak_normal_force", "peak_force_50ms", "dynamic_crush", "max_roll", "max_pitch"):
+    for metric in ("peak_normal_force", "peak_force_50ms", "dynamic_crush"):
         assert result.metrics[metric] == pytest.approx(long.metrics[metric], rel=1e-9)
+    for metric in (
+        "max_roll",
+        "max_pitch",
+    ):  # the truck leans by 0.04 deg, and a little more while it settles
+        assert result.metrics[metric] == pytest.approx(long.metrics[metric], rel=1e-3)
     moved = long.position[-1] - result.position[-1]
     assert (moved**2).sum() ** 0.5 < 0.03, "m; measured: 2 cm at the most"
 

@@ -16,10 +16,11 @@ def tired(vehicle: Vehicle, **changes: float | None) -> Vehicle:
 
 
 def held_straight(vehicle: Vehicle) -> Vehicle:
-    """Return the vehicle with wheels without free steering, round treads and camber thrust."""
-    return tired(vehicle, steering_time=None, camber_ratio=None, tread_radius=None)
+    """Return the vehicle with springs at the wheels, no free steering, round treads or camber thrust."""
+    plain = dict.fromkeys(("steering_time", "camber_ratio", "tread_radius", "roll_stiffness_ratio"))
+    return tired(vehicle, **plain)
 
 
 def quick_to_steer(vehicle: Vehicle) -> Vehicle:
-    """Return the vehicle with front wheels that follow their travel in 0.08 s: trucks then fall late."""
-    return tired(vehicle, steering_time=0.08)
+    """Return a truck that falls late: front wheels that follow in 0.08 s, springs at the wheels."""
+    return tired(vehicle, steering_time=0.08, roll_stiffness_ratio=None)

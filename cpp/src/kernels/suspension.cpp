@@ -9,11 +9,6 @@ bool has_springs(const Unit& unit) {
                        [](const Wheel& wheel) { return wheel.suspension.springs(); });
 }
 
-bool has_beam_axles(const Unit& unit) {
-    return std::any_of(unit.wheels.begin(), unit.wheels.end(),
-                       [](const Wheel& wheel) { return wheel.opposite != Wheel::none; });
-}
-
 namespace {
 
 // Of an extended wheel: from the mass centre to its lowest point, world axes (m), and how deep that is below the ground (m).

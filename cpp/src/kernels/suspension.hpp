@@ -5,8 +5,8 @@
 // So it keeps the energy in any pose. The damper adds d dc/dt; together they never pull. Where the body rises faster
 // than the damper lets the spring extend, the wheel carries nothing. The damper then takes what the spring loses.
 //
-// A beam axle has its springs inside of its wheels. With the ratio r of its stiffness against roll to that of springs at the
-// wheels, and the mean m and half the difference d of the two c, its energy is k (m^2 + r d^2). An end that carries nothing
+// A beam axle has its springs inside of its wheels. r is the ratio of its stiffness against roll to that of springs at the
+// wheels. With the mean m and half the difference d of the two c, its energy is k (m^2 + r d^2). An end that carries nothing
 // hangs where that is least: then the other end has the stiffness 2 k r / (1 + r). Dampers do the same with the rates of m and
 // d. Bump stops stand at the springs, sqrt(r) of the way from the middle of the axle to the wheels.
 #pragma once
@@ -27,18 +27,6 @@ struct SuspensionLoad {
 };
 
 bool has_springs(const Unit& unit);
-bool has_beam_axles(const Unit& unit);
-
-// An end of a beam axle: how far it is compressed (m), and the opposite end; negative: above the ground.
-struct AxleEnd {
-    double own, other;
-
-    // Does it carry load? The lower end of an axle does, and the other one down to where it hangs.
-    bool carries(double roll_ratio) const {
-        return own > (other > 0.0 ? (roll_ratio - 1.0) / (roll_ratio + 1.0) * other : 0.0);
-    }
-    AxleEnd opposite() const { return {other, own}; }
-};
 
 // Lists the loads of all sprung wheels that are on the ground and have not given way. `motion`: that dampers see, world
 // axes.

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "birm3d/base/tolerances.hpp"
-#include "kernels/suspension.hpp"
 
 namespace birm3d {
 
@@ -162,6 +161,11 @@ Wrench slip_friction(const UnitOnTires& on, double steering_angle, std::span<con
 }  // namespace
 
 namespace {
+
+bool has_beam_axles(const Unit& unit) {
+    return std::any_of(unit.wheels.begin(), unit.wheels.end(),
+                       [](const Wheel& wheel) { return wheel.opposite != Wheel::none; });
+}
 
 // The bump stops of a beam axle stand at its springs, see kernels/suspension.hpp. `first`: contacts of the unit's wheels, each
 // stopped where it stands.

@@ -125,8 +125,8 @@ class Zone(Mapping[str, Any]):
         critical damping. The third is the travel of the wheel from rest to the rigid bump stop [m]. The
         wheel's own mass is neglected. ``None``: wheels are fixed to the body.
     roll_stiffness_ratio
-        Of a zone of sprung tyres on beam axles: stiffness of an axle against roll over that of the same springs
-        at its wheels [-], at most 1. Springs stand inside of the wheels. ``None``: 1.
+        Of a zone of sprung tyres on beam axles: stiffness of an axle against roll over that of the same
+        springs at its wheels [-], at most 1. Springs stand inside of the wheels. ``None``: 1.
     cornering_stiffness
         Of a zone of tyres: lateral force on the road per normal load and radian of slip, at small slip
         [1/rad]. ``None``: that of a car's tyres, see :attr:`birm3d.simulation.Scene.cornering_stiffness`.

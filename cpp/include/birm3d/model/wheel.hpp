@@ -42,6 +42,17 @@ struct Wheel {
     bool steers() const { return steering_time < infinity; }
 };
 
+// An end of a beam axle: how far it is compressed (m), and the opposite end; negative: above the ground.
+struct AxleEnd {
+    double own, other;
+
+    // Does it carry load? The lower end of an axle does, and the other one down to where it hangs.
+    bool carries(double roll_ratio) const {
+        return own > (other > 0.0 ? (roll_ratio - 1.0) / (roll_ratio + 1.0) * other : 0.0);
+    }
+    AxleEnd opposite() const { return {other, own}; }
+};
+
 // From the mass centre to the lowest point of a wheel, for the body's rotation R; world axes (m). The wheel is pushed up
 // by `raised` from where it is at rest (m).
 Vec3 lowest_point(const Wheel& wheel, const Mat3& R, double raised);
