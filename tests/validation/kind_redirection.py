@@ -25,8 +25,7 @@ add to it.
 
 What the model can not do here: rear tyres of trucks turn them away from the barrier while they stand on two
 wheels. So the barrier's own impulse can be less than the change of momentum. A near-side tread that climbs
-a sloped face lifts the body, not its own wheel, and stays on. Slow steering lets a tractor with its trailer
-slide along the wall to the end of the run. The load of a trailer does not shift. The
+a sloped face lifts the body, not its own wheel, and stays on. The load of a trailer does not shift. The
 10-t truck has no camber thrust, and leans on the barrier for more than a second."""
 
 
