@@ -32,10 +32,12 @@ def test_tyre_reactions_carry_the_weight(name: str, speed: float, duration: floa
     assert reaction[:, left].sum(axis=1) == pytest.approx(reaction[:, ~left].sum(axis=1), rel=1e-6)
     if len(vehicle.units) > 1 or len(vehicle.wheels) > 4:
         return  # see the test of the semi truck; three axles carry as their springs share
-    # Lever rule about the axles.
+    # Lever rule about the axles; rolling resistance acts on the ground, below the mass centre.
     front = vehicle.wheels[:, 0] > 0.0
     a, b = vehicle.wheels[front, 0].mean(), -vehicle.wheels[~front, 0].mean()
-    assert reaction[:, front].sum(axis=1).mean() == pytest.approx(weight * b / (a + b), rel=1e-3)
+    retarding = -vehicle.mass * np.gradient(result.velocity[:, 0], result.time)[settled].mean()
+    moved = retarding * vehicle.mass_center_height
+    assert reaction[:, front].sum(axis=1).mean() == pytest.approx((weight * b + moved) / (a + b), rel=1e-3)
 
 
 def test_a_parked_vehicle_stays_where_it_is(result_of: Callable[[str], Result]) -> None:
@@ -219,7 +221,9 @@ def test_braking_slows_a_car_by_its_share_of_the_friction(braking: float, tire_m
         Vehicle.preset("passenger_car", mesh_density=0.1), None, 20.0, duration=0.5, settings=settings
     )
     change = 20.0 - run.run().velocity[-1, 0]
-    assert change == pytest.approx(braking * 0.7 * 9.80665 * 0.5, rel=2e-3)  # wheels dip and rise at first
+    rolling = 0.015 if tire_model == "slip" and braking < 1.0 else 0.0  # wheels that turn resist, too
+    expected = (braking * 0.7 + rolling) * 9.80665 * 0.5
+    assert change == pytest.approx(expected, rel=4e-3)  # wheels dip and rise at first
 
 
 def test_a_braked_car_comes_to_rest_and_stays() -> None:

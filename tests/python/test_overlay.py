@@ -87,7 +87,8 @@ def test_bands_last_as_long_as_the_longest_run(drawn: Study) -> None:
     assert set(bands.median) == {"deceleration", "travel"}
     assert np.isfinite(bands.high["deceleration"]).all()
     figure = bands.plot()
-    head = f"Passenger car, {drawn._scene.vehicle.mass:,.0f} kg, {drawn['impact_speed'].min():.2f} to "  # type: ignore[union-attr]
+    mass = drawn._scene.vehicle.mass  # type: ignore[union-attr]
+    head = f"Passenger car, {mass:,.0f}\N{NO-BREAK SPACE}kg, {drawn['impact_speed'].min():.2f} to "
     assert figure.get_suptitle().startswith(head)
     assert "at 90°: rigid wall without end" in figure.get_suptitle().replace("\n", " ")
     assert figure.axes[1].get_ylabel() == "travel [m]"

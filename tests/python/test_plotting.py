@@ -339,7 +339,7 @@ def test_plans_say_what_became_of_the_vehicle(oblique: Result, head_on: Result) 
         assert f"{result.outcome}: {result.outcome_detail}\n" in words
         side = "from" if result.metrics["exit_angle"] >= 0.0 else "towards"
         assert words.endswith(f"{abs(result.metrics['exit_angle']):.1f}° {side} the barrier's line")
-        assert f"{result.metrics['time_of_separation'] * 1e3:.0f} ms" in words
+        assert f"{result.metrics['time_of_separation'] * 1e3:.0f}\N{NO-BREAK SPACE}ms" in words
 
 
 def test_rounding_errors_are_not_drawn_as_motion() -> None:

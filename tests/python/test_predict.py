@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Prediction, Simulation, Vehicle, units
 from birm3d.scene_parameters import value_of, varied
-from birm3d.study.predict import drawn_parameters, draws, quantiles
+from birm3d.study.class_draws import drawn_parameters, draws
+from birm3d.study.predict import quantiles
 
 CAR = Vehicle.preset("passenger_car", mesh_density=0.1)
 WALL = Simulation(CAR, Barrier.rigid_wall(), units.km_h(56.0))
@@ -102,7 +103,7 @@ def test_more_draws_change_little() -> None:
 def test_presets_say_how_their_class_scatters(name: str) -> None:
     vehicle = Vehicle.preset(name, mesh_density=0.1)
     scene = Simulation(vehicle, Barrier.jersey(), 20.0, 20.0)
-    found = birm3d.study.predict.drawn_parameters(scene, 3)
+    found = drawn_parameters(scene, 3)
     assert {"scatter.front", "scatter.side", "scatter.tires"} <= set(found)
     assert {"vehicle.mass_center_height", "barrier.friction", "settings.mu_tire"} <= set(found)
     for parameter, values in found.items():

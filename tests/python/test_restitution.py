@@ -27,7 +27,7 @@ def test_restitution_falls_with_speed(name: str) -> None:
     for speed in (2.0, 2.5, 3.0):  # car-to-car tests: 0.38 at a closing speed of 2.2 m/s
         assert 0.35 <= restitution(vehicle, speed) <= 0.50
     assert 0.10 <= found[SPEEDS.index(15.9)] <= 0.22  # NHTSA test 10146: 0.17 and 0.20
-    assert 0.385 <= found[0] < 0.475  # the page of validation has these ranges
+    assert 0.375 <= found[0] < 0.475  # the page of validation has these ranges
     assert 0.065 <= found[-1] < 0.155
 
 

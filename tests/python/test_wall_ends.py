@@ -39,6 +39,8 @@ def lost_speed(result: Result) -> float:
     return float(result.velocity[0, 0] - result.velocity[:, 0].min())
 
 
+# Beside the frame of the cab-over truck the thin post gets 0.15 m into the rigid body.
+@pytest.mark.filterwarnings("ignore::birm3d.OverlapWarning")
 @pytest.mark.parametrize(("name", "least"), LEAST_OVERLAP)
 def test_a_planter_resists_as_the_post_inside_its_end(name: str, least: float) -> None:
     """Trucks that overlapped a planter by half once passed it, pushed off sideways; the post stopped them.

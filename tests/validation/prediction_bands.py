@@ -31,7 +31,8 @@ import kind_small_overlap  # noqa: E402
 from birm3d import Simulation, scenes  # noqa: E402
 from birm3d.reference import NhtsaTest, nhtsa_tests  # noqa: E402
 from birm3d.scene_parameters import varied  # noqa: E402
-from birm3d.study.predict import draws, quantiles  # noqa: E402
+from birm3d.study.class_draws import draws  # noqa: E402
+from birm3d.study.predict import quantiles  # noqa: E402
 from comparison import facts  # noqa: E402
 from scipy.optimize import brentq  # noqa: E402
 

@@ -13,7 +13,8 @@ from ..result.result import Result
 from ..scene.scene import Scene
 from ..simulation.parameters import varied_scene
 from ..simulation.simulation import Simulation
-from ..study.predict import SHARE, check_draws, drawn_parameters, quantiles
+from ..study.class_draws import check_draws, drawn_parameters
+from ..study.predict import SHARE, quantiles
 from .element_design import BANDED, ElementDesign
 
 __all__ = ["Bands", "ClassDraws", "Seen", "bands_of", "class_draws", "governing_scenes", "with_bands"]

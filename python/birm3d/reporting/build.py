@@ -13,7 +13,8 @@ from ..assessment import DesignLoad
 from ..base.arguments import checked
 from ..result.result import Result
 from ..study import Study
-from ..study.predict import Prediction, check_draws
+from ..study.class_draws import check_draws
+from ..study.predict import Prediction
 from .folder import PAGE, check_folder, write_folder
 
 if TYPE_CHECKING:

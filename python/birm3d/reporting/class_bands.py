@@ -18,7 +18,8 @@ from ..result.metric_table import METRICS
 from ..result.result import Result
 from ..result.summary import HEADLINES, shown_as
 from ..simulation import Simulation
-from ..study.predict import Prediction, parameter_of
+from ..study.class_draws import parameter_of
+from ..study.predict import Prediction
 from ..study.predict_and_look import predict_and_look
 from ..study.whole_runs import look_at_study
 from ..vehicle.class_scatter import joined

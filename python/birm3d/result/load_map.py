@@ -33,8 +33,9 @@ __all__ = ["LoadMap", "load_map"]
 Floats = npt.NDArray[np.float64]
 
 _LEAST_CELL = 0.01  # m
-# Below this share of the greatest force what nodes do not account for is an error of interpolation.
-_REST = 0.03
+_REST = (
+    0.03  # share of the greatest force below which what nodes do not account for is an error of interpolation
+)
 _CLASS = 60.0  # SAE J211-1, barrier forces
 
 
@@ -290,7 +291,7 @@ def _moments_of(time: Floats, steps: list[FaceStep]) -> Floats:
     """Return the moments of the nodes' forces in the middles of the rows, shape (n, 2) [N m]."""
     ends = np.array([step.time for step in steps])
     at_ends = np.array([(step.force @ step.along, step.force @ step.height) for step in steps])
-    return np.column_stack([np.interp(_middles(time), ends, at_ends[:, k]) for k in range(2)])
+    return np.column_stack([np.interp(_middles(time), ends, column) for column in at_ends.T])
 
 
 def _row(cells: Iterable[str]) -> str:

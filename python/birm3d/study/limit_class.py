@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from ..simulation.simulation import Simulation
+from .class_draws import check_draws, drawn_parameters
 from .distributions import check_count
 from .limit_question import Question
-from .predict import check_draws, drawn_parameters
 from .runner import run_study
 
 __all__ = ["class_shares", "drawn_vehicles"]

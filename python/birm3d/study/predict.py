@@ -12,27 +12,23 @@ import numpy.typing as npt
 
 from .. import pictures
 from ..base.arguments import checked
-from ..base.checks import shown
 from ..base.frozen_mapping import FrozenMapping
 from ..result.event import outcome_words
 from ..result.metric_table import METRICS
 from ..result.summary import shown_as
 from ..scene.text import scene_text
-from ..simulation.parameters import parameter_names, value_of
 from ..simulation.simulation import Simulation
-from ..vehicle.class_scatter import QUANTITIES, joined
-from ..vehicle.vehicle import Vehicle
+from .class_draws import check_draws, drawn_parameters, zones_set
 from .counted import counted, is_count
 from .runner import run_study
 from .table import Study
 
-__all__ = ["SHARE", "Prediction", "check_draws", "drawn_parameters", "parameter_of", "predict", "quantiles"]
+__all__ = ["SHARE", "Prediction", "predict", "quantiles"]
 
 Floats = npt.NDArray[np.float64]
 
 SHARE = 0.8
 """Of the draws within a band."""
-_MOST = 10  # power of two of the greatest number of draws
 _BLOW = 2.0
 """Unfiltered over filtered peak of a force above which a rigid body has struck."""
 _SMALL_OVERLAP = 0.4
@@ -57,15 +53,6 @@ _SET = (
     "The law of {zones} was set by the user. Its band is centred on this vehicle and as wide as that of the "
     "class."
 )
-
-# What a quantity of the class is called among the scene's parameters; a factor on it, where it is no law's.
-_PARAMETERS = {
-    "mass_center_height": "vehicle.mass_center_height",
-    "barrier_friction": "barrier.friction",
-    "tire_friction": "settings.mu_tire",
-    "edge_flank": "settings.edge_flank_factor",
-    "bed_fixings": "vehicle.bed_fixings",
-}
 
 
 class Prediction:
@@ -148,7 +135,7 @@ class Prediction:
             if struck:
                 told.append(_STRUCK.format(n=struck, all=len(self.study)))
         scene = self.study._scene
-        changed = () if scene is None else _changed_zones(scene.vehicle)
+        changed = () if scene is None else zones_set(scene.vehicle)
         if changed:
             told.append(_SET.format(zones=", ".join(changed)))
         if scene is not None and scene.barrier is not None and "peak_element_force" in metrics:
@@ -243,20 +230,6 @@ def predict(
     return Prediction(study, share)
 
 
-def check_draws(name: str, n: int) -> int:
-    """Return the power of two that a number of draws is.
-
-    Raises
-    ------
-    ValueError
-        If it is none, or out of range.
-    """
-    power = int(n).bit_length() - 1
-    if isinstance(n, bool) or n != 2**power or not 3 <= power <= _MOST:
-        raise ValueError(f"{name} must be a power of 2 from 8 to {2**_MOST}, got {shown(n)}")
-    return power
-
-
 def _shown(value: float) -> str:
     return f"{value:,.0f}" if abs(value) >= _LARGE else f"{value:.4g}"
 
@@ -265,59 +238,3 @@ def quantiles(values: Floats, share: float) -> tuple[float, float, float]:
     """Return low end, median and high end of a band with a share of values that stand for equal parts."""
     ends = np.quantile(values, [0.5 - 0.5 * share, 0.5, 0.5 + 0.5 * share], method="hazen")
     return (float(ends[0]), float(ends[1]), float(ends[2]))
-
-
-def draws(power: int) -> Mapping[str, Floats]:
-    """Return 2**power standard normal numbers of each quantity of :data:`QUANTITIES`, always the same."""
-    from scipy.special import ndtri
-    from scipy.stats.qmc import Sobol
-
-    # Not scrambled, so that they are the same everywhere; in the middles of their cells, never 0 or 1.
-    points = Sobol(len(QUANTITIES), scramble=False).random_base2(power) + 0.5 ** (power + 1)
-    return dict(zip(QUANTITIES, ndtri(points).T, strict=True))
-
-
-def parameter_of(quantity: str) -> str:
-    """Return the scene's parameter that stands for a quantity of :data:`QUANTITIES`."""
-    return _PARAMETERS.get(quantity, f"scatter.{quantity}")
-
-
-def drawn_parameters(simulation: Simulation, power: int) -> dict[str, Floats]:
-    """Return the 2**power values of each parameter of the scene that is drawn.
-
-    Raises
-    ------
-    ValueError
-        If the file of the vehicle says nothing of its class.
-    """
-    vehicle = simulation.scene.vehicle
-    scatter = joined([unit.scatter for unit in vehicle.units], vehicle.zones_met)
-    if not scatter:
-        raise ValueError(
-            "simulation must have a vehicle whose file says how its class scatters ([[scatter]]), "
-            f"got {vehicle.name!r}"
-        )
-    normal, known = draws(power), parameter_names(simulation)
-    has_edges = getattr(simulation.scene.barrier, "rounding", 0.0) > 0.0
-    changed = frozenset(_changed_zones(vehicle))
-    columns = {}
-    for name, one in scatter.items():
-        parameter = parameter_of(name)
-        if parameter not in known or (name == "edge_flank" and not has_edges):
-            continue  # no barrier, no trusses of such a zone, or no rounded edges
-        present = value_of(simulation, parameter)
-        if present > 0.0:
-            median = one.median if changed.isdisjoint(one.zones) else 1.0
-            columns[parameter] = present * (median * np.exp(one.log_sd * normal[name]))
-    return columns
-
-
-def _changed_zones(vehicle: Vehicle) -> tuple[str, ...]:
-    """Return the zones whose laws differ from those of the vehicle's file."""
-    return tuple(
-        name
-        for unit in vehicle.units
-        if unit._file is not None
-        for name, law in unit.zones.items()
-        if law != unit._file.laws.get(name)
-    )

@@ -14,9 +14,10 @@ from ..result.result import Result
 from ..result.run_values import parts_of
 from ..simulation.parameters import varied_scene
 from ..simulation.simulation import Simulation
+from .class_draws import check_draws, drawn_parameters
 from .float_rows import FloatRows
 from .outcome_table import OutcomeTable
-from .predict import SHARE, Prediction, check_draws, drawn_parameters
+from .predict import SHARE, Prediction
 from .runner import checked_metrics
 from .store import Outcome
 from .table import Study

@@ -145,7 +145,7 @@ def laboratory_cases() -> list[Case]:
 
     dense = partial(Vehicle.preset, "passenger_car", mesh_density=17.0)
     thrown = partial(Vehicle.preset, "paper_pickup", mesh_density=0.25)  # tyres without camber thrust
-    kerb = Barrier.rigid_wall(height=0.5, width=60.0)
+    kerb = Barrier.rigid_wall(height=0.65, width=60.0)
     return [
         Case("nodes", "one node", "head-on", lies(weightless, lambda: one(0.0)), True, 0.0),
         Case("nodes", "one node", "head-on, 0.8 m to the side", lies(weightless, lambda: one(0.8)), True),
@@ -170,8 +170,8 @@ def laboratory_cases() -> list[Case]:
         ),
         # Sideways into a low wall: it rolls over and over on the ground behind.
         Case(
-            *("rollover", "pickup thrown over a kerb", "80 m/s sideways"),
-            lambda: Simulation(thrown(), kerb, 80.0, impact_yaw=90.0, duration=15.0),
+            *("rollover", "pickup thrown over a kerb", "100 m/s sideways"),
+            lambda: Simulation(thrown(), kerb, 100.0, impact_yaw=90.0, duration=15.0),
             True,
             turns=TURNS,
         ),
