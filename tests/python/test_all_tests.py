@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import sys
 from pathlib import Path
 
@@ -97,3 +98,15 @@ def test_errors_and_marks() -> None:
     limit = Row("a", "b", "penetration at rest, limit", "m", 0.6, -20.0, 0.6, -3.31)
     assert limit.met
     assert limit.error_text == "-3.91 m"
+
+
+def test_readme_says_how_many_tests_are_computed_as_contained() -> None:
+    words = (TESTS.parent / "README.md").read_text(encoding="utf-8")
+    said = re.search(r"(\d+) of (\d+) are computed as contained, and (\d+) were", words)
+    assert said is not None
+    page_of_ratings = (FOLDER / "ratings.md").read_text(encoding="utf-8")
+    found = re.search(
+        r"in \d+ of (\d+) tests\. (\d+) are computed as contained,\s+and (\d+) were", page_of_ratings
+    )
+    assert found is not None
+    assert said.groups() == (found[2], found[1], found[3])

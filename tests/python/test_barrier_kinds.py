@@ -223,6 +223,12 @@ def test_each_planter_of_a_row_is_met_as_if_it_stood_alone(edge_radius: float | 
         assert one.velocity == pytest.approx(other.velocity, abs=1e-9)
         touched = [load.name for load in one.element_loads if load.touched]
         assert touched == [f"planter {i + 1}"]
+    van = Vehicle.preset("van_3500", mesh_density=0.2)
+    over_two, at_one = (
+        Simulation(van, b, 1.0, impact_yaw=90.0, impact_offset=0.3).run() for b in (row, alone)
+    )
+    # The loads of each are followed on their own, with those of its edges. Mixed up: 100 times as many steps
+    assert over_two.metrics["steps"] < 3 * at_one.metrics["steps"]
     wide = Barrier.planter(**block, count=2, spacing=4.5)
     through = Simulation(car, wide, 12.0).run()
     assert through.outcome_detail == "it passed between two elements of the barrier, untouched"

@@ -1,6 +1,7 @@
 #include "contact/contact_loads.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/block_loop.hpp"
 #include "contact/corner_contacts.hpp"
@@ -114,6 +115,16 @@ void keep_ended_loads(const std::vector<ContactLoad>& before, std::vector<Contac
     }
 }
 
+// Puts the contacts of one structure side by side. Edges and ends of a block come after all blocks of a row.
+void sort_by_structure(const Scene& scene, std::vector<ContactLoad>& loads) {
+    std::sort(loads.begin(), loads.end(), [&](const ContactLoad& one, const ContactLoad& other) {
+        const auto place = [&](const ContactLoad& load) {
+            return std::pair(scene.obstacles[load.obstacle].structure, load.obstacle);
+        };
+        return place(one) < place(other);
+    });
+}
+
 }  // namespace
 
 void apply_friction(const ContactPass& pass, std::size_t k, const Places& places, const BlockContact& contact,
@@ -168,6 +179,7 @@ void store_loads(const ContactPass& pass, Trial& trial) {
     }
     if (skin.resistance.trace() > 0.0) skin.resistance = rotated(skin.resistance, R);
     keep_ended_loads(pass.before.contact_loads, loads);
+    sort_by_structure(pass.scene, loads);
     now.contact_loads = loads;
 }
 

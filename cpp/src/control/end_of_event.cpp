@@ -44,8 +44,9 @@ Box around_both(const Box& one, const Box& other) {
 Box box_of_structure(const Scene& scene, std::size_t i) {
     const Obstacle& first = scene.obstacles[i];
     Box box = bounds(first.shape);
-    for (std::size_t j = i + 1; j < scene.obstacles.size() && scene.obstacles[j].structure == i; ++j) {
+    for (std::size_t j = i + 1; j < scene.obstacles.size(); ++j) {
         const Obstacle& part = scene.obstacles[j];
+        if (part.structure != i) continue;
         box = around_both(box, bounds(part.shape)
                                    .placed(first.rotation.transpose() * part.rotation,
                                            first.rotation.transpose() * (part.position - first.position)));

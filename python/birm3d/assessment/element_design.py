@@ -88,7 +88,8 @@ class ElementDesign:
         Static force that asks as much of a system of the given period, ductility and damping as the
         unfiltered load along ``direction`` [N]; it acts at ``height``. Of a post that has yielded it is
         ``yield_force``, or twice ``peak_force`` if that is less. Of one that could yield and has not, the
-        system is elastic, and the force at most ``yield_force``.
+        system is elastic, and the force at most ``yield_force``. The height of an envelope is that of its
+        greatest ``force_50ms``, perhaps of another scene: take ``moment`` there, or the row of one scene.
     yield_force : float
         Of posts that yield: the moment that resists over the height of the 50-ms force above the point about
         which the post turns, in the scene of ``equivalent_static_force`` [N]. Infinite of all others.

@@ -24,14 +24,15 @@ class Rating:
     standard : str
     verdict : str
         Class or code of a security barrier, as ``"M50-P1"``, ``"K12-L3"``, ``"V/7200[N3C]/80/90:0.8"``;
-        ``"pass"`` or ``"fail"`` of a roadside barrier, with its classes. ``"no rating: ..."`` names the
-        conditions of the standard that are not met.
+        ``"pass"``, ``"fail"`` or ``"fail, within the model's error"`` of a roadside barrier, with its
+        classes. ``"no rating: ..."`` names the conditions of the standard that are not met.
     penetration : float
         Greatest dynamic distance of the standard's point of the vehicle past the standard's datum of the
         barrier [m]; negative where it stays before it. Of MASH and EN 1317: of any part of the vehicle past
         the undeformed traffic face.
     contained : bool
-        Whether the vehicle was kept from going on past the barrier, within the standard's worst class.
+        Whether the vehicle does not go on past the barrier. By a security standard one that came to rest
+        behind it is contained, within the worst class of penetration.
     criteria : tuple of Criterion
         Name, value, limit, verdict of all that was judged or is reported.
     cautions : tuple of str
@@ -46,7 +47,7 @@ class Rating:
     is_final : bool
         Whether the penetration can not grow any more.
     is_clear : bool
-        Whether a fail rests on more than occupant risk that the model's error decides on.
+        False if all that fails are values of occupant risk which the model's error decides on.
     """
 
     standard: str

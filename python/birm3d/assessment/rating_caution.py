@@ -35,7 +35,7 @@ _RIGID = (
     "Barriers that are modelled as rigid do not give way, so that tests read more penetration and deflection."
 )
 _FREE = "Segments slide and turn, but do not tip or break."
-_YIELDING = "Posts yield at the ground, but do not buckle or tear."
+_YIELDING = "Posts yield at the ground, or where their foundations turn, but do not buckle or tear."
 _LIMITS = (
     "Limits and tolerances are those that are commonly reported of the standard: check them in its text."
 )
@@ -47,9 +47,9 @@ _TIPS = (
 )
 _ROLLS_LITTLE = (
     "Springs, steering and camber thrust are estimates: computed vehicles may roll too little. At a New "
-    "Jersey barrier of 0.81 m the 10000S overturns at 16 deg, as published, but stays upright at 15 deg. "
-    "At 0.91 and 1.07 m it stays upright, as commonly reported. A heavy vehicle that is computed upright may "
-    "roll over in a test."
+    "Jersey barrier of 0.81 m the 10000S overturns at 16 deg, but stays upright at 15 deg. Its camber "
+    "thrust was set by a test at 16 deg, so that this supports nothing. A heavy vehicle that is computed "
+    "upright may roll over in a test."
 )
 _TANK = (
     "Test 6-12 asks for a tractor with a tank trailer. A van trailer in its place, as the package has it, "
@@ -77,8 +77,8 @@ _RISK_LIMITS = {
     "H: OIV, lateral": FLAIL_LIMITS["MASH"].velocity[1],
 }
 _NEAR = (
-    "Within {error:.0f} % of the limit, which is the model's error in tests: {names}. A pass or a fail by "
-    "that is no verdict."
+    "Within {error:.0f} % of the limit: {names}. That is the greater error of computed OIV in two tests, "
+    "taken for all of these. A pass or a fail by that is no verdict."
 )
 _RIDEDOWN = (
     "Computed ridedown was 76 and 171 % above two tests: a fail by {names} is no verdict. It rests on peaks "

@@ -114,9 +114,9 @@ SECURITY = {
 
 _GOES_ON = "the vehicle goes on past the barrier"
 _COASTS = _core.coasting_speed
-"""At this speed [m/s] a rolling resistance of a hundredth of the weight stops a vehicle within 0.4 m.
+"""Speed [m/s] from which a rolling resistance of a hundredth of the weight stops a vehicle within 0.4 m.
 
-The model has no rolling resistance.
+Presets resist with 0.012 to 0.015 of the weight.
 """
 
 

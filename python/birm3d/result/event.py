@@ -1,8 +1,9 @@
 """What became of the vehicle at the barrier: one of six words, and a sentence that says how.
 
-The core finds it while the run goes on (:class:`birm3d._core.Event`). So it depends neither on the duration,
-once that is long enough, nor on histories. The vehicle *has left for good* when it moves away from every
-element of the barrier so that no rotation brings it back. Of a free-standing chain the box around it counts.
+The core finds it while the run goes on (:class:`birm3d._core.Event`), without histories. It does not depend
+on the duration of a run that ends after the vehicle has left or rests. The vehicle *has left for good* when
+it moves away from every element of the barrier so that no rotation brings it back. Of a free-standing chain
+the box around it counts.
 A vehicle that goes on past the barrier must also be out of its reach. One that skids beside an end of the
 barrier is followed until its tyres turn its path no more, one that rolls past the end until it has passed.
 
@@ -14,20 +15,23 @@ for the last time, as its exit angle is. Rolling over counts over the whole run:
     element was below its rigid body. Or it has rolled over, or rests, behind the far side of the element
     over which it crossed the line.
 ``passed``
-    It left past the line, or towards it beyond the barrier's end, or rests behind the barrier out of reach.
-    So does one that was stopped or redirected, and came past an end of the barrier afterwards.
+    It left past the line, or towards it beyond the barrier's end, or rests past the line without touching
+    the barrier. So does one that was stopped or redirected, and came past an end of the barrier afterwards.
+    The path of one that was turned back counts until it is clear: two times the reach of the vehicle from
+    its mass centre away from every element.
 ``rolled_over``
     Neither of these, and an up axis was beyond 90 degrees from the vertical at some step. Vehicles that start
-    more than 45 degrees from upright are not judged.
+    more than 46 degrees from upright never have rolled over.
 ``redirected``
     Contained, and it leaves along the barrier, within 45 degrees of the line in its direction of travel. It
     has more than a tenth of its impact speed. Or it slides on along a straight barrier, at rest sideways. Or
     it still slides along any barrier when a run of 5 s or longer ends.
 ``stopped``
-    Contained, and its motion into the barrier ended: it rebounds or rests. Or it has less than a tenth of its
+    Contained, and its motion into the barrier ended: it rebounds or rests. One that rests against a post may
+    have its mass centre past the line. Or it has less than a tenth of its
     impact speed when a run of 5 s or longer ends.
 ``undecided``
-    The run ended before, or there is no barrier.
+    The run ended before, or there is no barrier and the vehicle has not rolled over.
 
 The line is that of :func:`birm3d.metrics.compute_metrics`; of free-standing barriers it moves with their
 segments, of meshes it is where they end. On paths along the line it is where the barrier begins.

@@ -1,4 +1,4 @@
-// The outcome of a run, found step by step. It depends neither on the duration nor on the histories that are kept.
+// The outcome of a run, found step by step, whatever histories are kept.
 #pragma once
 
 #include <cstdint>
