@@ -116,12 +116,14 @@ std::vector<Box> boxes_of_barrier(const Scene& scene, const State& state, const 
 }
 
 // May a vehicle that moves away from all elements still come past an end of the barrier? It may where it skids beside an end, or
-// rolls on beside it towards the protected side, and is not past the barrier yet. If it was turned back, it must be near.
-bool may_pass_an_end(const Scene& scene, const State& state, bool turned_back) {
+// rolls on beside it, and is not past the barrier yet. If it was turned back, it must be near.
+bool may_pass_an_end(const Scene& scene, const State& state, const KnownPath& path) {
     if (!scene.settings.ground || scene.settings.gravity == 0.0 || scene.settings.mu_tire == 0.0)
         return false;
-    const bool rolls_in = state.units.front().body.velocity.dot(scene.towards()) > tolerance::coasting_speed;
-    if (!rolls_in && !skids(scene, state)) return false;
+    const Vec3& motion = state.units.front().body.velocity;
+    const bool rolls_in = motion.dot(scene.towards()) > tolerance::coasting_speed;
+    const bool moves = motion.norm() > tolerance::coasting_speed;  // its tyres may still turn its path
+    if (!rolls_in && !skids(scene, state) && (path.turned_back || path.is_past || !moves)) return false;
     Mat3 axes;
     axes << scene.towards(), Vec3::UnitZ().cross(scene.towards()), Vec3::UnitZ();
     const Vec3 place = axes.transpose() * state.units.front().body.position,
@@ -133,7 +135,7 @@ bool may_pass_an_end(const Scene& scene, const State& state, bool turned_back) {
         past = past && place.x() > box.center.x();
         clear = clear && from_box(box, place).head<2>().norm() > margin;
     }
-    return !past && !(turned_back && clear);
+    return !past && !(path.turned_back && clear);
 }
 
 // Moving elements that friction can stop have stopped.
@@ -227,20 +229,20 @@ bool has_left(const Scene& scene, const State& state) {
     return true;
 }
 
-bool is_over(const Scene& scene, const State& state, bool turned_back) {
-    return has_left(scene, state) && !tips(scene, state) && !may_pass_an_end(scene, state, turned_back) &&
+bool is_over(const Scene& scene, const State& state, const KnownPath& path) {
+    return has_left(scene, state) && !tips(scene, state) && !may_pass_an_end(scene, state, path) &&
            moving_elements_rest(scene, state);
 }
 
 double time_of_decision(const Scene& scene, std::span<const BodyState> before, double released, double dt,
-                        bool turned_back, State& now) {
-    if (!is_over(scene, now, turned_back)) return now.time;  // all came to rest
+                        const KnownPath& path, State& now) {
+    if (!is_over(scene, now, path)) return now.time;  // all came to rest
     std::vector<BodyState> after;
     list_body_states(now, after);
     const auto is_over_at = [&](double fraction) {
         for (std::size_t b = 0; b < after.size(); ++b)
             body_state(now, b) = between(before[b], after[b], fraction);
-        return is_over(scene, now, turned_back);
+        return is_over(scene, now, path);
     };
     double open = released / dt, over = 1.0;
     if (is_over_at(open)) over = open;

@@ -16,13 +16,18 @@ bool touches(const State& state);
 // reach, as its rear still has to pass the element.
 bool has_left(const Scene& scene, const State& state);
 
-// Has the vehicle left the barrier for good, with no wheel rising and all moving elements at rest? `turned_back`: see Event.
-bool is_over(const Scene& scene, const State& state, bool turned_back);
+// What is known of a vehicle that has left: did the barrier turn it back, and has it got past the barrier? See Event.
+struct KnownPath {
+    bool turned_back = false, is_past = false;
+};
+
+// Has the vehicle left the barrier for good, with no wheel rising and all moving elements at rest?
+bool is_over(const Scene& scene, const State& state, const KnownPath& path);
 
 // The instant within a step of dt from which the outcome is decided (s). It does not depend on the length of the
 // step. The outcome is decided at the end of the step. `before`: the bodies at the start. No node pushes from
 // `released` on (s after the start). `now`: the state at the end; its bodies are moved in the search and restored.
 double time_of_decision(const Scene& scene, std::span<const BodyState> before, double released, double dt,
-                        bool turned_back, State& now);
+                        const KnownPath& path, State& now);
 
 }  // namespace birm3d

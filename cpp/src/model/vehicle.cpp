@@ -43,19 +43,22 @@ namespace {
 
 // Notes the two ends of each beam axle: sprung wheels side by side whose springs stand inside of them.
 void find_axles(std::vector<Wheel>& wheels) {
-    constexpr double same_place = 1e-6;  // m
+    constexpr double same_place = 0.02;  // m
     const auto on_axle = [](const Wheel& wheel) {
         return wheel.suspension.springs() && wheel.suspension.roll_ratio < 1.0;
     };
     for (Wheel& wheel : wheels)
         wheel.opposite = Wheel::none;
-    for (std::size_t i = 0; i < wheels.size(); ++i)
+    for (std::size_t i = 0; i < wheels.size(); ++i) {
+        if (!on_axle(wheels[i]) || wheels[i].opposite != Wheel::none) continue;
         for (std::size_t j = i + 1; j < wheels.size(); ++j) {
-            const Vec3 &one = wheels[i].center, &other = wheels[j].center;
-            if (!on_axle(wheels[i]) || !on_axle(wheels[j]) || !(one.y() * other.y() < 0.0)) continue;
-            if (std::hypot(one.x() - other.x(), one.z() - other.z()) < same_place)
-                wheels[i].opposite = j, wheels[j].opposite = i;
+            const bool mirrored =
+                (wheels[j].center - Vec3(1.0, -1.0, 1.0).cwiseProduct(wheels[i].center)).norm() < same_place;
+            if (!on_axle(wheels[j]) || wheels[j].opposite != Wheel::none || !mirrored) continue;
+            wheels[i].opposite = j, wheels[j].opposite = i;
+            break;
         }
+    }
 }
 
 }  // namespace

@@ -17,9 +17,6 @@ namespace {
 // A vehicle that moves at a smaller angle to the line neither leaves nor passes it: sine of one degree.
 constexpr double parallel = 0.017452406;
 
-// A vehicle in contact as the longest run ends slides along the line up to this angle to it: tangent of 6 degrees.
-constexpr double still_along = 0.1;
-
 bool touches_barrier(const Scene& scene, const State& state) {
     return std::any_of(state.units.begin(), state.units.end(),
                        [&](const UnitState& unit) { return skin_touches_barrier(scene, unit); });
@@ -63,8 +60,8 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
 void revise(const Scene& scene, const State& state, bool at_end, Event& event) {
     if (!event.left || event.clear || event.touching || event.rolled_over() || runs_along_line(scene)) return;
     if (event.verdict != Verdict::stopped && event.verdict != Verdict::redirected) return;
-    event.clear = event.turned_back() && is_clear_of_barrier(scene, state, event);
     const Vec3& velocity = state.units.front().body.velocity;
+    event.clear = event.turned_back() && is_clear_of_barrier(scene, state, event);
     const bool moves = velocity.norm() > tolerance::coasting_speed;
     const bool nears =
         at_end && !event.clear &&
@@ -92,7 +89,7 @@ void judge_rest(const Scene& scene, const State& state, Event& event) {
 }  // namespace
 
 Verdict Event::outcome() const {
-    if (!rolled_over() || verdict == Verdict::passed || verdict == Verdict::overridden) return verdict;
+    if (!rolled_over() || is_past()) return verdict;
     return behind_element ? Verdict::overridden : Verdict::rolled_over;
 }
 
@@ -138,7 +135,8 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
 }
 
 bool is_decided(const Scene& scene, const State& state, Event& event) {
-    const bool over = event.left && !event.touching && is_over(scene, state, event.turned_back()),
+    const bool over = event.left && !event.touching &&
+                      is_over(scene, state, {event.turned_back(), event.is_past()}),
                at_rest = rests(scene, state, event);
     if (over || at_rest) {
         if (!over && !event.decided()) judge_rest(scene, state, event);
@@ -155,7 +153,9 @@ bool is_decided(const Scene& scene, const State& state, Event& event) {
 }
 
 bool rolls_on(const State& state, const Event& event) {
-    return !event.decided() && !event.touching &&
+    // One that has rolled on, and now touches the barrier, is followed through that contact.
+    const bool followed = state.time > tolerance::longest_event + tolerance::shortest_step;
+    return !event.decided() && (followed || !event.touching) &&
            state.units.front().body.velocity.norm() > tolerance::coasting_speed;
 }
 
@@ -179,7 +179,7 @@ void judge_at_longest(const Scene& scene, const State& state, Event& event) {
             event.manner = Manner::slow;
         return;
     }
-    if (!goes_on || std::abs(across) > still_along * std::abs(along)) return;
+    if (!goes_on || std::abs(across) > tolerance::nearly_along * std::abs(along)) return;
     if (distance_past_line(scene, state, event) < 0.0)
         event.verdict = Verdict::redirected, event.manner = Manner::slides_on;
 }

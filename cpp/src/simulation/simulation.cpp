@@ -152,8 +152,8 @@ void Simulation::accept_trial() {
     follow_event(scene_, state_, {begin, released, trial.body_held_by_barrier()}, event_);
     if (undecided && is_decided(scene_, state_, event_)) {
         state_.decided = true;
-        state_.decided_at =
-            time_of_decision(scene_, work_->before, released, trial.dt, event_.turned_back(), trial.state);
+        state_.decided_at = time_of_decision(scene_, work_->before, released, trial.dt,
+                                             {event_.turned_back(), event_.is_past()}, trial.state);
     }
     const bool long_enough = state_.time >= tolerance::longest_event - tolerance::shortest_step;
     if (!state_.decided && long_enough && !(remaining() > 0.0)) judge_at_longest(scene_, state_, event_);

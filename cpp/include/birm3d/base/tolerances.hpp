@@ -164,11 +164,15 @@ inline constexpr double coasting_speed = 0.25;
 // of the barrier. Large: unbraked cars that roll in a wide circle have passed.
 inline constexpr double clear_of_barrier = 2.0;
 
+// What moves at less than this angle to the line has neither been turned back nor is it sure to pass: sine of 6 degrees. Large:
+// the path of what rebounds along the barrier is followed on. Small: a vehicle whose tyres turn it in again is held.
+inline constexpr double nearly_along = 0.1;
+
 // The instant at which the outcome of a run is decided is found to within this (s).
 inline constexpr double decision_resolution = 1e-6;
 
 // A run without a duration ends here at the latest (s). A vehicle that is undecided by then and rolls on free of the barrier is
-// followed. That ends once it has passed, coasts or touches again, at the latest at the second time.
+// followed. That ends once it has passed or coasts, at the latest at the second time.
 inline constexpr double longest_event = 5.0, longest_rolling = 30.0;
 
 // Segments abut whose ends are this near to each other (m): rounding of their places.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "birm3d/base/tolerances.hpp"
 #include "birm3d/scene/scene.hpp"
 
 namespace birm3d {
@@ -66,8 +67,11 @@ struct Event {
     Verdict verdict = Verdict::undecided;  // the verdict without regard to rolling over, see outcome()
     Manner manner = Manner::no_barrier;
 
-    // Has the barrier turned the vehicle back, so that it moved away from the line as it lost contact?
-    bool turned_back() const { return released_velocity.dot(towards) < 0.0; }
+    // Has the barrier turned the vehicle back, so that it clearly moved away from the line as it lost contact?
+    bool turned_back() const {
+        return released_velocity.dot(towards) < -tolerance::nearly_along * released_velocity.norm();
+    }
+    bool is_past() const { return verdict == Verdict::passed || verdict == Verdict::overridden; }
     bool decided() const { return verdict != Verdict::undecided; }
     bool rolled_over() const { return upright && least_upright < 0.0; }
     Verdict outcome() const;
