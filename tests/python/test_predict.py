@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Prediction, Simulation, Vehicle, units
 from birm3d.scene_parameters import value_of, varied
-from birm3d.study.class_draws import drawn_parameters, draws
+from birm3d.study.class_draws import drawn_parameters, draws, zones_set
 from birm3d.study.predict import quantiles
 
 CAR = Vehicle.preset("passenger_car", mesh_density=0.1)
@@ -198,6 +198,8 @@ def test_a_front_that_was_set_is_in_the_middle_of_its_band() -> None:
     """The class of the van has a median of 1.06: a calibrated front was drawn 6 % too stiff."""
     van = Vehicle.preset("van_3500", mesh_density=0.1)
     fitted = van.with_zone("engine", scale=1.3)
+    rolling = van.with_zone("tire", rolling_resistance=0.01)
+    assert zones_set(rolling) == zones_set(van) == (), "no force of the class"
     for vehicle, middle in ((van, 1.06), (van.scaled_to(3000.0), 1.06), (fitted, 1.0)):
         scene = Simulation(vehicle, Barrier.rigid_wall(), 15.0)
         drawn = drawn_parameters(scene, 5)["scatter.front"]

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import _core, units
-from ..result.event import gets_past, is_open, longer_run, outcome_words
+from ..result.event import PAST, gets_past, is_open, longer_run, outcome_words
+from ..result.leaning_posts import low_post_lines
 from ..result.run_warnings import doubt_lines
 from ..vehicle.joint import LONGEST_SLIP
 from .criteria import Criterion
@@ -173,6 +174,8 @@ def rate_security(
         (mass, *rows[:-1], measured, rows[-1], became),
         (
             *doubt_lines(result),
+            # Of a vehicle that came to rest behind the posts, the class of penetration rests on their lean.
+            *(low_post_lines(result.statistics) if result.outcome in PAST and not failed else ()),
             *tipping_lines(result),
             standard.caution,
             *_of_bed(result),

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..scene.scene import Scene
     from .stored import Stored
 
-__all__ = ["LeaningPostWarning", "leaning_posts"]
+__all__ = ["LeaningPostWarning", "leaning_posts", "low_post_lines"]
 
 _FASTEST = 3.0  # m/s: more than a van that pitches at rigid posts has
 _STEEPEST = 45.0  # deg: a little less than where a post becomes a ramp, see kernels/indentation.hpp
@@ -42,6 +42,12 @@ def leaning_posts(
         tilt = math.degrees(statistics.greatest_tilt)
         text, advice = partial(_held, title, tilt), partial(_held_advice, tilt)
         yield Complaint(LeaningPostWarning, "post_tilt", tilt, text, advice)
+
+
+def low_post_lines(statistics: _core.StepStatistics | Stored) -> Iterator[str]:
+    """Yield the doubt in what is read of a run whose posts lie low, whatever its outcome."""
+    if _lie_low(statistics):
+        yield _held_advice(math.degrees(statistics.greatest_tilt))
 
 
 def _thrown_advice(speed: float) -> str:

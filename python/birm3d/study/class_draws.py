@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,10 +14,19 @@ from ..simulation.parameters import parameter_names, value_of
 from ..simulation.simulation import Simulation
 from ..vehicle.class_scatter import QUANTITIES, joined
 from ..vehicle.vehicle import Vehicle
+from ..vehicle.zone import Zone
 
 __all__ = ["check_draws", "drawn_parameters", "draws", "parameter_of", "zones_set"]
 
 Floats = npt.NDArray[np.float64]
+
+_NOT_DRAWN = (
+    "camber_ratio",
+    "cornering_stiffness",
+    "roll_stiffness_ratio",
+    "rolling_resistance",
+    "steering_time",
+)
 
 _MOST = 10  # power of two of the greatest number of draws
 
@@ -95,5 +106,11 @@ def zones_set(vehicle: Vehicle) -> tuple[str, ...]:
         for unit in vehicle.units
         if unit._file is not None
         for name, law in unit.zones.items()
-        if law != unit._file.laws.get(name)
+        if _forces(law) != _forces(unit._file.laws.get(name))
     )
+
+
+def _forces(law: Zone | None) -> Zone | None:
+    """Return a law without the numbers of its wheels that no factor of the class is on."""
+    unset: dict[str, Any] = dict.fromkeys(_NOT_DRAWN)
+    return None if law is None else replace(law, **unset)
