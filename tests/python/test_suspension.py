@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle, Zone, scenes
+from birm3d.vehicle.vehicle_file import preset_path
 from birm3d.vehicle.wheel_arguments import wheel_loads
 from scipy.constants import g
 
@@ -48,6 +49,22 @@ def test_a_vehicle_stands_still_on_its_springs(name: str) -> None:
     assert np.abs(result.position - result.position[0]).max() < 1e-6
     assert abs(result.energy["suspension"]).max() < 1e-3  # J
     assert not result.energy["impacts"].any()  # no bump stop was met
+
+
+def test_a_load_off_the_middle_stands_still_on_beam_axles(tmp_path: Path) -> None:
+    """Each end carries its own load at rest. When both carried half, the truck rolled by 2.6 deg."""
+    text = preset_path("cargo_truck").read_text(encoding="utf-8")
+    engine = "box_m = [[-0.35, 0.65], [-0.42, 0.42], [0.65, 1.35]]\nmass_kg = 720"
+    assert engine in text
+    file = tmp_path / "truck.toml"
+    file.write_text(text.replace(engine, engine.replace("[-0.42, 0.42]", "[0.1, 0.94]")), encoding="utf-8")
+    truck = Vehicle.from_file(file, mesh_density=0.1)
+    loads = wheel_loads(truck)
+    assert abs(loads[truck.wheels[:, 1] > 0.0].sum() / loads.sum() - 0.5) > 0.02
+    result = alone(truck, duration=2.0)
+    assert np.abs(result.position - result.position[0]).max() < 1e-6
+    assert np.abs(result.roll).max() < 1e-4
+    assert abs(result.energy["suspension"]).max() < 1e-3  # J
 
 
 def test_loads_at_rest_follow_the_lever_rule(car: Vehicle) -> None:

@@ -32,6 +32,16 @@ double mean_of(double Suspension::* number, const Suspension& own, const Wheel& 
     return 0.5 * (own.*number + opposite.suspension.*number);
 }
 
+// Compressions of an axle whose wheel `own` carries more at rest than the other. A shift s of both, against each other, makes
+// the axle carry these loads at rest: k (m + ratio (d + s)) is that of `own`. Without a difference it is zero.
+AxleEnd preloaded(const Suspension& own, const Suspension& other, double ratio, const AxleEnd& depths) {
+    const double carried = own.stiffness * own.at_rest - other.stiffness * other.at_rest;
+    if (carried == 0.0 && own.at_rest == other.at_rest) return depths;
+    const double stiffness = 0.5 * (own.stiffness + other.stiffness);
+    const double shift = 0.5 * (carried / (ratio * stiffness) - (own.at_rest - other.at_rest));
+    return {depths.own + shift, depths.other - shift};
+}
+
 // Stiffness times compression, or damping times its rate, at a loaded end of a beam axle.
 double at_end(double factor, double ratio, const AxleEnd& value, bool both_carry) {
     if (!both_carry) return 2.0 * factor * ratio / (1.0 + ratio) * value.own;
@@ -65,8 +75,8 @@ void find_suspension_loads(const Unit& unit, const BodyState& state, const Twist
         double spring = 0.0, damper = 0.0;
         if (const Wheel* opposite = opposite_of(unit, i, given_way)) {
             const Extended other = extended(*opposite, state, R);
-            const AxleEnd end{own.depth, other.depth};
             const double ratio = suspension.roll_ratio;
+            const AxleEnd end = preloaded(suspension, opposite->suspension, ratio, {own.depth, other.depth});
             if (!end.carries(ratio)) continue;
             const bool both = end.opposite().carries(ratio);
             const AxleEnd rates{compression_rate(own.arm), compression_rate(other.arm)};
@@ -91,10 +101,14 @@ double spring_energy(const Unit& unit, const BodyState& state, WheelSet given_wa
         const Wheel* opposite = has_wheel(given_way, i) ? nullptr : opposite_of(unit, i, given_way);
         if (opposite != nullptr) {
             // Half of the axle's energy stands for each of its ends.
-            const AxleEnd end{depth, extended(*opposite, state, R).depth};
-            const double stiffness = mean_of(&Suspension::stiffness, suspension, *opposite);
-            sum += 0.5 * energy_of_axle(stiffness, suspension.roll_ratio, end) -
-                   0.5 * suspension.stiffness * suspension.at_rest * suspension.at_rest;
+            const double ratio = suspension.roll_ratio,
+                         stiffness = mean_of(&Suspension::stiffness, suspension, *opposite);
+            const auto energy = [&](double own, double other) {
+                return energy_of_axle(stiffness, ratio,
+                                      preloaded(suspension, opposite->suspension, ratio, {own, other}));
+            };
+            sum += 0.5 * energy(depth, extended(*opposite, state, R).depth) -
+                   0.5 * energy(suspension.at_rest, opposite->suspension.at_rest);
             continue;
         }
         const double compression = has_wheel(given_way, i) ? 0.0 : std::max(0.0, depth);

@@ -49,15 +49,23 @@ void find_axles(std::vector<Wheel>& wheels) {
     };
     for (Wheel& wheel : wheels)
         wheel.opposite = Wheel::none;
+    // How far two wheels are from a mirrored pair (m); infinite where they are on one side, or not side by side.
+    const auto asymmetry = [](const Vec3& one, const Vec3& other) {
+        const bool beside =
+            one.y() * other.y() < 0.0 && std::hypot(one.x() - other.x(), one.z() - other.z()) < same_place;
+        return beside ? std::abs(one.y() + other.y()) : infinity;
+    };
     for (std::size_t i = 0; i < wheels.size(); ++i) {
         if (!on_axle(wheels[i]) || wheels[i].opposite != Wheel::none) continue;
+        double least = infinity;
+        std::size_t nearest = Wheel::none;
         for (std::size_t j = i + 1; j < wheels.size(); ++j) {
-            const bool mirrored =
-                (wheels[j].center - Vec3(1.0, -1.0, 1.0).cwiseProduct(wheels[i].center)).norm() < same_place;
-            if (!on_axle(wheels[j]) || wheels[j].opposite != Wheel::none || !mirrored) continue;
-            wheels[i].opposite = j, wheels[j].opposite = i;
-            break;
+            if (!on_axle(wheels[j]) || wheels[j].opposite != Wheel::none) continue;
+            const double off = asymmetry(wheels[i].center, wheels[j].center);
+            if (off < least) least = off, nearest = j;
         }
+        if (nearest == Wheel::none) continue;
+        wheels[i].opposite = nearest, wheels[nearest].opposite = i;
     }
 }
 
