@@ -35,8 +35,9 @@ def at_post(name: str, overlap: float) -> Result:
 
 
 def lost_speed(result: Result) -> float:
-    """Greatest change of the forward velocity [m/s]."""
-    return float(result.velocity[0, 0] - result.velocity[:, 0].min())
+    """Greatest change of the forward velocity until the vehicle has left [m/s]; its tyres act later, too."""
+    until = result.time <= result.metrics.get("time_of_separation", result.time[-1])
+    return float(result.velocity[0, 0] - result.velocity[until, 0].min())
 
 
 # Beside the frame of the cab-over truck the thin post gets 0.15 m into the rigid body.

@@ -18,7 +18,7 @@ Floats = npt.NDArray[np.float64]
 
 SPREAD = 0.0125
 """Four quarters of a node's force act so far from it, along and up [m]."""
-_MOST_INSTANTS = 800  # forces of nodes are kept at so many instants: in long runs not at each step's end
+_MOST_INSTANTS = 800  # until the last contact; in long contacts not at each step's end
 
 
 class FaceStep(NamedTuple):
@@ -35,11 +35,14 @@ def face_steps(result: RunRecord, front: Front) -> list[FaceStep]:
     core = result.scene.start()
     shapes = unit_shapes(result.scene.vehicle)
     steps = [FaceStep(core.time, *[np.empty(0)] * 3)]
-    least = float(result.time[-1]) / _MOST_INSTANTS
+    loaded = result.time[np.any(result.barrier_force != 0.0, axis=1)]
+    until = float(loaded[-1]) if len(loaded) else 0.0
+    least = until / _MOST_INSTANTS
     for number in range(result.statistics.steps):
         core.step()
         last = number == result.statistics.steps - 1
-        if not last and core.time < steps[-1].time + least:
+        over = steps[-1].time > until
+        if not last and (over or core.time < steps[-1].time + least):
             continue
         pressed = [_pressed(core, unit, shape, front) for unit, shape in enumerate(shapes)]
         along, height, force = (np.concatenate(column) for column in zip(*pressed, strict=True))

@@ -33,9 +33,7 @@ __all__ = ["LoadMap", "load_map"]
 Floats = npt.NDArray[np.float64]
 
 _LEAST_CELL = 0.01  # m
-_REST = (
-    0.03  # share of the greatest force below which what nodes do not account for is an error of interpolation
-)
+_REST = 0.03  # of the greatest force; what nodes do not account for below it is an error of interpolation
 _CLASS = 60.0  # SAE J211-1, barrier forces
 
 
