@@ -76,7 +76,7 @@ def test_the_trailer_pushes_the_tractor(semi: Vehicle, crash: dict) -> None:
     dt = np.diff(result.time)
     along = result.joint_force[1:, 0] @ dt
     change = result.unit(1).velocity[-1, 0] - result.unit(1).velocity[0, 0]
-    # On the leading unit forwards what takes the trailer's momentum, but for its rolling resistance.
+    # The push on the tractor takes the trailer's momentum. The trailer's rolling resistance takes the rest.
     assert along == pytest.approx(-trailer.mass * change, rel=2e-4)
     assert along > 0.0
     assert result.metrics["peak_joint_force_50ms"] > 1e6

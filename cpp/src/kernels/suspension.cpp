@@ -28,8 +28,8 @@ const Wheel* opposite_of(const Unit& unit, std::size_t i, WheelSet given_way) {
     return other == Wheel::none || has_wheel(given_way, other) ? nullptr : &unit.wheels[other];
 }
 
-double mean_of(double Suspension::* number, const Suspension& own, const Wheel& opposite) {
-    return 0.5 * (own.*number + opposite.suspension.*number);
+double mean_of(double Suspension::* number, const Suspension& own, const Suspension& other) {
+    return 0.5 * (own.*number + other.*number);
 }
 
 // Compressions of an axle whose wheel `own` carries more at rest than the other. A shift s of both, against each other, makes
@@ -37,7 +37,7 @@ double mean_of(double Suspension::* number, const Suspension& own, const Wheel& 
 AxleEnd preloaded(const Suspension& own, const Suspension& other, double ratio, const AxleEnd& depths) {
     const double carried = own.stiffness * own.at_rest - other.stiffness * other.at_rest;
     if (carried == 0.0 && own.at_rest == other.at_rest) return depths;
-    const double stiffness = 0.5 * (own.stiffness + other.stiffness);
+    const double stiffness = mean_of(&Suspension::stiffness, own, other);
     const double shift = 0.5 * (carried / (ratio * stiffness) - (own.at_rest - other.at_rest));
     return {depths.own + shift, depths.other - shift};
 }
@@ -80,8 +80,10 @@ void find_suspension_loads(const Unit& unit, const BodyState& state, const Twist
             if (!end.carries(ratio)) continue;
             const bool both = end.opposite().carries(ratio);
             const AxleEnd rates{compression_rate(own.arm), compression_rate(other.arm)};
-            spring = at_end(mean_of(&Suspension::stiffness, suspension, *opposite), ratio, end, both);
-            damper = at_end(mean_of(&Suspension::damping, suspension, *opposite), ratio, rates, both);
+            spring =
+                at_end(mean_of(&Suspension::stiffness, suspension, opposite->suspension), ratio, end, both);
+            damper =
+                at_end(mean_of(&Suspension::damping, suspension, opposite->suspension), ratio, rates, both);
         } else {
             if (!(own.depth > 0.0)) continue;
             spring = suspension.stiffness * own.depth;
@@ -102,7 +104,7 @@ double spring_energy(const Unit& unit, const BodyState& state, WheelSet given_wa
         if (opposite != nullptr) {
             // Half of the axle's energy stands for each of its ends.
             const double ratio = suspension.roll_ratio,
-                         stiffness = mean_of(&Suspension::stiffness, suspension, *opposite);
+                         stiffness = mean_of(&Suspension::stiffness, suspension, opposite->suspension);
             const auto energy = [&](double own, double other) {
                 return energy_of_axle(stiffness, ratio,
                                       preloaded(suspension, opposite->suspension, ratio, {own, other}));

@@ -158,43 +158,40 @@ Wrench slip_friction(const UnitOnTires& on, double steering_angle, std::span<con
     return sum;
 }
 
-}  // namespace
+// Where a bump stop stands, and how far it is from the ground.
+struct Stop {
+    Vec3 arm;
+    double gap;
+};
 
-namespace {
-
-bool has_beam_axles(const Unit& unit) {
-    return std::any_of(unit.wheels.begin(), unit.wheels.end(),
-                       [](const Wheel& wheel) { return wheel.opposite != Wheel::none; });
+// The stop of a wheel at its spring. `own`, `other`: as if the stops of the axle stood at its wheels.
+Stop at_spring(const Suspension& suspension, const Mat3& R, const Stop& own, const Stop& other) {
+    const double ratio = suspension.roll_ratio, inside = std::sqrt(ratio);
+    const double travel = (suspension.at_rest + suspension.bump) * R(2, 2);
+    const AxleEnd end{travel - own.gap, travel - other.gap};
+    if (end.carries(ratio) && end.opposite().carries(ratio)) {
+        const double share = 0.5 * (1.0 + inside);
+        return {share * own.arm + (1.0 - share) * other.arm, share * own.gap + (1.0 - share) * other.gap};
+    }
+    // Only this end carries load: its spring moves by this share of the wheel's travel.
+    const double share = inside * (1.0 + inside) / (1.0 + ratio);
+    return {own.arm, own.gap + travel * (1.0 / share - 1.0)};
 }
 
 // The bump stops of a beam axle stand at its springs, see kernels/suspension.hpp. `first`: contacts of the unit's wheels, each
 // stopped where it stands.
 void move_stops_to_springs(const Unit& unit, const Mat3& R, WheelSet given_way,
                            std::span<RigidContact> first) {
-    struct Stop {
-        Vec3 arm;
-        double gap;
-    };
-    std::vector<Stop> at_wheels;
-    for (const RigidContact& contact : first)
-        at_wheels.push_back({contact.arm, contact.gap});
     for (std::size_t i = 0; i < unit.wheels.size(); ++i) {
         const std::size_t j = unit.wheels[i].opposite;
-        if (j == Wheel::none || has_wheel(given_way, i) || has_wheel(given_way, j)) continue;
-        const Suspension& suspension = unit.wheels[i].suspension;
-        const double ratio = suspension.roll_ratio, inside = std::sqrt(ratio);
-        const double travel = (suspension.at_rest + suspension.bump) * R(2, 2);
-        const Stop &own = at_wheels[i], &other = at_wheels[j];
-        const AxleEnd end{travel - own.gap, travel - other.gap};
-        if (end.carries(ratio) && end.opposite().carries(ratio)) {
-            const double share = 0.5 * (1.0 + inside);
-            first[i].arm = share * own.arm + (1.0 - share) * other.arm;
-            first[i].gap = share * own.gap + (1.0 - share) * other.gap;
-        } else {
-            // The axle hangs on this end alone: its spring moves by this share of the wheel's travel.
-            const double share = inside * (1.0 + inside) / (1.0 + ratio);
-            first[i].gap = own.gap + travel * (1.0 / share - 1.0);
-        }
+        if (j == Wheel::none || j < i || has_wheel(given_way, i) || has_wheel(given_way, j)) continue;
+        const Stop one{first[i].arm, first[i].gap}, other{first[j].arm, first[j].gap};
+        const auto move = [&](std::size_t k, const Stop& own, const Stop& opposite) {
+            const Stop moved = at_spring(unit.wheels[k].suspension, R, own, opposite);
+            first[k].arm = moved.arm, first[k].gap = moved.gap;
+        };
+        move(i, one, other);
+        move(j, other, one);
     }
 }
 
@@ -218,7 +215,7 @@ void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& sta
         contact.compliance = tolerance::tire_compliance;
         contacts.push_back(contact);
     }
-    if (at == WheelAt::bump_stop && has_beam_axles(unit))
+    if (at == WheelAt::bump_stop)
         move_stops_to_springs(unit, R, given_way, std::span(contacts).subspan(first));
 }
 

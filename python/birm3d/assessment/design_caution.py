@@ -9,17 +9,15 @@ import numpy as np
 
 from ..barrier.barrier import Barrier
 from ..barrier.kinds import Bollards
+from ..base.complaints import Complaint
 from ..result.element_loads import ElementLoad, touched_elements
 from ..result.result import Result
-from ..result.run_warnings import doubts
+from ..result.run_warnings import worst_lines
 from ..signals.filters import cfc
 from .element_design import peak_filter
 from .vehicles import HEAVY_KG
 
-__all__ = ["Doubts", "barrier_caution", "has_blow", "height_caution", "merged", "run_cautions", "run_doubts"]
-
-Doubts = dict[str, tuple[float, str]]
-"""Quantity that puts the outcome of a run in doubt -> its value, the greater the worse, and a sentence."""
+__all__ = ["barrier_caution", "has_blow", "height_caution", "merged", "run_cautions"]
 
 _ONE_BODY = (
     "The vehicle is one rigid body with a crushable skin: engine, frame and cargo do not stop one after the "
@@ -120,14 +118,6 @@ def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:
     return {text: names for text, names in found.items() if names}
 
 
-def run_doubts(result: Result) -> Doubts:
-    """Return why the outcome of a run can not be relied on."""
-    if result._event is None:
-        return {}
-    found = doubts(result.scene, result.statistics, result._event)
-    return {doubt.quantity: (doubt.value, doubt.advice()) for doubt in found if doubt.advice}
-
-
 def height_caution(result: Result) -> str:
     """Return that the force of a heavy vehicle is found low; ``""`` for a car, a van or a pickup."""
     return _LOW if result.scene.vehicle.mass > HEAVY_KG else ""
@@ -147,18 +137,14 @@ def has_blow(result: Result) -> bool:
     return _BLOW in run_cautions(result)
 
 
-def merged(runs: Iterable[Mapping[str, tuple[str, ...]]], doubtful: Iterable[Doubts] = ()) -> list[str]:
+def merged(runs: Iterable[Mapping[str, tuple[str, ...]]], doubts: Iterable[Complaint] = ()) -> list[str]:
     """Return the texts of several runs, each once with all its elements, and the worst doubt of each kind."""
-    worst: Doubts = {}
-    for found in doubtful:
-        for quantity, doubt in found.items():
-            worst[quantity] = max(worst.get(quantity, doubt), doubt)
     names: dict[str, dict[str, None]] = {}
     for run in runs:
         for text, elements in run.items():
             names.setdefault(text, {}).update(dict.fromkeys(elements))
     texts = [text.format(elements=", ".join(elements)) for text, elements in names.items()]
-    return texts + [text for _, text in worst.values()]
+    return texts + list(worst_lines(doubts))
 
 
 def _acts_at_end(load: ElementLoad) -> bool:

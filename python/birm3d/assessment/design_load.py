@@ -13,13 +13,15 @@ import numpy.typing as npt
 from ..barrier.kinds import Bollards
 from ..barrier.text import barrier_text
 from ..base.arguments import checked
+from ..base.complaints import Complaint
 from ..result.result import Result
+from ..result.run_warnings import doubts_of
 from ..simulation.simulation import Simulation
 from ..study.predict import Prediction
 from ..study.table import Study
 from ..units import Quantity
 from .class_bands import Bands, Seen, bands_of, class_draws, governing_scenes, with_bands
-from .design_caution import Doubts, has_blow, merged, run_cautions, run_doubts
+from .design_caution import has_blow, merged, run_cautions
 from .design_plan import DesignPlan, design_plan, predicted_scene
 from .design_remarks import design_cautions
 from .design_table import DesignLoad, LoadScene
@@ -54,7 +56,7 @@ class _Found(NamedTuple):
 
     rows: list[ElementDesign]
     cautions: dict[str, tuple[str, ...]]
-    doubts: Doubts
+    doubts: tuple[Complaint, ...]
 
 
 @checked
@@ -214,14 +216,14 @@ class _Envelope:
         )
         found = [self.found[run] for run in sorted(self.found)]
         rows = [row for one in found for row in one.rows]
-        of_runs = merged((one.cautions for one in found), (one.doubts for one in found))
+        of_runs = merged((one.cautions for one in found), (doubt for one in found for doubt in one.doubts))
         cautions = design_cautions(load, plan, rows, of_runs)
         load.caution = " ".join(dict.fromkeys(cautions))
         return load
 
 
 def _look(result: Result, normal: Floats, system: System) -> _Found:
-    return _Found(_rows_of(result, normal, system), run_cautions(result), run_doubts(result))
+    return _Found(_rows_of(result, normal, system), run_cautions(result), doubts_of(result))
 
 
 def _rows_of(result: Result, normal: Floats, system: System) -> list[ElementDesign]:

@@ -21,7 +21,15 @@ if TYPE_CHECKING:
     from .analysis import RunAnalysis
     from .stored import Stored
 
-__all__ = ["complaints_of_run", "doubt_lines", "doubts", "warn_of_run", "worst_doubts"]
+__all__ = [
+    "complaints_of_run",
+    "doubt_lines",
+    "doubts",
+    "doubts_of",
+    "warn_of_run",
+    "worst_doubts",
+    "worst_lines",
+]
 
 
 def complaints_of_run(
@@ -49,15 +57,24 @@ def doubt_lines(result: RunAnalysis) -> Iterator[str]:
     yield from worst_doubts([result])
 
 
+def doubts_of(result: RunAnalysis) -> tuple[Complaint, ...]:
+    """Return the complaints that say why the outcome of a run can not be relied on."""
+    if result._event is None:
+        return ()
+    return tuple(doubts(result.scene, result.statistics, result._event))
+
+
 def worst_doubts(results: Iterable[RunAnalysis]) -> Iterator[str]:
     """Yield why the outcomes of runs can not be relied on: of each kind the worst."""
+    yield from worst_lines(doubt for result in results for doubt in doubts_of(result))
+
+
+def worst_lines(found: Iterable[Complaint]) -> Iterator[str]:
+    """Yield what doubts of runs say: of each kind the worst."""
     worst: dict[str, Complaint] = {}
-    for result in results:
-        if result._event is None:
-            continue
-        for doubt in doubts(result.scene, result.statistics, result._event):
-            if doubt.quantity not in worst or doubt.value > worst[doubt.quantity].value:
-                worst[doubt.quantity] = doubt
+    for doubt in found:
+        if doubt.quantity not in worst or doubt.value > worst[doubt.quantity].value:
+            worst[doubt.quantity] = doubt
     for doubt in worst.values():
         assert doubt.advice is not None
         yield doubt.advice()
