@@ -67,16 +67,19 @@ CornerFace nearest_face_of(const ContactBlock& block, std::size_t i) {
     return face;
 }
 
-// The face of the k-th reachable obstacle that is nearest to `place`; its gap is that of the node, without its lag.
-CornerFace face_at(const ContactPass& pass, const ContactBlock& block, std::size_t k, const Vec3& place,
-                   const Vec3& node) {
+// The face of the k-th reachable obstacle that is nearest to `place`; its gap is that of the i-th node, without its lag.
+CornerFace face_at(const ContactPass& pass, const ContactBlock& block, std::size_t i, std::size_t k,
+                   const Vec3& place) {
+    const Vec3 node(block.start->x[i], block.start->y[i], block.start->z[i]);
     const NearObstacle& near = pass.near[block.reachable[k]];
     const Nearest there = nearest(pass.shape(block.reachable[k]), near.now.to_own(place));
     CornerFace face;
     face.reachable_index = k;
     face.normal = face.gradient = face.direction = near.now.direction_from_own(there.normal);
     face.gap = there.gap + face.normal.dot(node - place);
-    if (block.start->hangs) face.gap = without_lag(near, node, face.normal, face.gap);
+    // Skin that an edge has carried along lies inside the wall's face once it has come past the edge.
+    if (block.start->hangs || block.faces.per_force[i] > 0.0)
+        face.gap = without_lag(near, node, face.normal, face.gap);
     return face;
 }
 
@@ -111,7 +114,7 @@ void add_faces_since_start(const ContactPass& pass, const ContactBlock& block, c
             continue;
         }
         if (is_past_covered_end(pass, block, k, node)) continue;
-        const CornerFace face = face_at(pass, block, k, node, node);
+        const CornerFace face = face_at(pass, block, corner.node_index, k, node);
         const bool was_on =
             std::abs(face.gap) <= tolerance::touching_gap || stood_on(pass, block, k, face.normal, node);
         if (was_on) corner.add(face);
@@ -125,7 +128,7 @@ void add_driving(const ContactPass& pass, const ContactBlock& block, const Vec3&
         bool any = false;
         for (std::size_t k = 0; k < block.reachable.size(); ++k) {
             if (!is_solid_to(pass, block.index, corner.node_index, block.reachable[k])) continue;
-            const CornerFace face = face_at(pass, block, k, place, node);
+            const CornerFace face = face_at(pass, block, corner.node_index, k, place);
             const double gap = face.gap + face.normal.dot(place - node);
             any = (gap < -tolerance::touching_gap && corner.add(face)) || any;
         }

@@ -230,6 +230,7 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
     HoldingSurfaces holding;
     find_holding_surfaces(pass, block, holding);
     rank.fill(infinity);
+    block.hangs = block.hangs || block_max(holding.lags_pushing) > 0.0;
     const TrussBlock& trusses = pass.mesh.block[block.index];
     for (const BlockIndentation& reached : block.indentations) {
         const IndentedPanel& indented = pass.indentations[reached.indentation];
