@@ -114,7 +114,7 @@ void crush_stopped(const ContactPass& pass, ContactState& state) {
 
 PlaneSums* only_plane(const ContactPass& pass, const ContactBlock& block, ContactSums& sums) {
     const std::vector<std::size_t>& reachable = block.reachable;
-    if (reachable.empty() || !block.indentations.empty() || block.start->hangs) return nullptr;
+    if (reachable.empty() || !block.indentations.empty() || block.start->may_lag()) return nullptr;
     const bool known =
         reachable.size() == 1 && !sums.planes.empty() && sums.planes.back().near == reachable[0];
     if (known && std::holds_alternative<HalfSpace>(pass.shape(reachable[0])))

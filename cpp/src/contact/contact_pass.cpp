@@ -61,6 +61,7 @@ void apply_contact(const ContactPass& pass, std::size_t b, ContactState& state, 
         crush_on_surfaces(pass, state);
     block.end->met = true;
     block.end->hangs = block.hangs;
+    block.end->lagging = block.lagging;
     block.end->box = box_around(block.end->x, block.end->y, block.end->z);
 }
 

@@ -78,6 +78,7 @@ struct ContactBlock {
         start = &at_start;
         end = &at_end;
         hangs = false;
+        lagging.reset();
     }
     // The start of the step in a copy, where nodes can be placed elsewhere.
     TrussBlockState& alter() {
@@ -107,6 +108,7 @@ struct ContactBlock {
     alignas(64) BlockColumn released;    // nodes that an indentation releases (1, else 0)
     bool hangs;                          // does any of its nodes follow a top edge, or lag?
     std::bitset<block_size> lags;        // nodes that lag inside their nearest surface, see lagging_nodes.hpp
+    std::bitset<block_size> lagging;     // at the end of the step, see TrussBlockState
     std::optional<Vec3> flat_normal;     // of all nodes in `contact`, where they met one plane
     std::vector<Corner> corners;         // nodes that are on several surfaces
     std::vector<StoppedNode> stopped;

@@ -77,8 +77,7 @@ CornerFace face_at(const ContactPass& pass, const ContactBlock& block, std::size
     face.reachable_index = k;
     face.normal = face.gradient = face.direction = near.now.direction_from_own(there.normal);
     face.gap = there.gap + face.normal.dot(node - place);
-    // Skin that an edge has carried along lies inside the wall's face once it has come past the edge.
-    if (block.start->hangs || block.faces.per_force[i] > 0.0)
+    if (block.start->may_lag(i) || block.lagging[i])
         face.gap = without_lag(near, node, face.normal, face.gap);
     return face;
 }

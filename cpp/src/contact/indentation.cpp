@@ -159,6 +159,12 @@ BIRM3D_BLOCK_LOOP void note_released(const BlockColumn& follows, BlockColumn& re
         released[i] = follows[i] > 0.0 ? follows[i] - 1.0 : released[i];
 }
 
+// Nodes that follow, though they lag inside a surface: the edge of a wall has carried them past its axis.
+void note_lagging(const BlockColumn& follows, const BlockColumn& lags, std::bitset<block_size>& lagging) {
+    for (std::size_t i = 0; i < block_size; ++i)
+        if (follows[i] == 1.0 && lags[i] > 0.0) lagging.set(i);
+}
+
 // Did the node push on its nearest surface at the start of the step? Then it follows that surface through the step.
 bool pushed_on_surface(const ContactPass& pass, const ContactBlock& block, std::size_t i) {
     const TrussBlockState& nodes = *block.start;
@@ -230,7 +236,6 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
     HoldingSurfaces holding;
     find_holding_surfaces(pass, block, holding);
     rank.fill(infinity);
-    block.hangs = block.hangs || block_max(holding.lags_pushing) > 0.0;
     const TrussBlock& trusses = pass.mesh.block[block.index];
     for (const BlockIndentation& reached : block.indentations) {
         const IndentedPanel& indented = pass.indentations[reached.indentation];
@@ -245,6 +250,7 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
                            block.contact, rank, follows);
         note_second(follows, gap, block.second_gap);
         note_released(follows, block.released);
+        note_lagging(follows, holding.lags_pushing, block.lagging);
         block.hangs = block.hangs || (indented.indentation.is_face && block_max(follows) > 0.0);
         const auto reachable = std::find(block.reachable.begin(), block.reachable.end(), indented.near) -
                                block.reachable.begin();

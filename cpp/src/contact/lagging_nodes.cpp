@@ -20,17 +20,21 @@ double without_lag(const NearObstacle& near, const Vec3& node, const Vec3& norma
 void keep_lags(const ContactPass& pass, ContactBlock& block) {
     block.lags.reset();
     const bool was_left = (pass.mesh.panels_of[block.index] & pass.left_panels) != 0;
-    if (!block.start->hangs && !was_left) return;
+    if (!block.start->may_lag() && !was_left) return;
     const TrussBlockState& nodes = *block.start;
     for (std::size_t i = 0; i < block_size; ++i) {
         if (block.faces.per_force[i] > 0.0) continue;  // an indentation moves it
+        if (!was_left && !block.start->may_lag(i)) continue;
         double& gap = block.faces.gap[i];
         const double moves = without_lag(pass.near[block.reachable[block.nearest[i]]],
                                          {nodes.x[i], nodes.y[i], nodes.z[i]}, block.contact.normal(i), gap);
         if (moves != gap) block.lags.set(i);
         gap = moves;
     }
-    block.hangs = block.hangs || block.lags.any();
+    if (block.start->hangs || was_left)
+        block.hangs = block.hangs || block.lags.any();
+    else
+        block.lagging |= block.lags;
 }
 
 }  // namespace birm3d

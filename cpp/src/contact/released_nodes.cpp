@@ -189,7 +189,7 @@ StoppedNode left_node(const ContactPass& pass, std::size_t i, double work, const
     StoppedNode node{
         i,   path.end, last.residual[i], last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i],
         work};
-    const auto stop = last.hangs ? std::nullopt : find_first_stop(pass, path, distant);
+    const auto stop = last.may_lag(i) ? std::nullopt : find_first_stop(pass, path, distant);
     if (!stop || *stop == path.start) return node;
     node.place = *stop;
     node.deflection = truss.length[i] - (*stop - anchor_of(truss, i)).norm();

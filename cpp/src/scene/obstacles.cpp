@@ -146,7 +146,7 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
                     shape, in_shape, i == scene.ground ? mesh.shell_blocks : mesh.blocks,
                     [&](std::size_t b) -> std::optional<Points> {
                         const TrussBlockState& block = unit.trusses.block[b];
-                        if ((mesh.panels_of[b] & indented) != 0 || block.hangs) return std::nullopt;
+                        if ((mesh.panels_of[b] & indented) != 0 || block.may_lag()) return std::nullopt;
                         if (b < mesh.skin_blocks || b >= mesh.shell_blocks)
                             return Points{block.box, &block.x, &block.y, &block.z};
                         // Nodes of second trusses count where they push, as the first trusses' nodes are the skin.

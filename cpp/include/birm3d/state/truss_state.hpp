@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <numeric>
 #include <vector>
 
@@ -20,6 +21,11 @@ struct BlockFlags {
     bool met = false;       // has anything come into it, in any step?
     // Does any node follow a top edge (top_edge.hpp), or lag inside a surface since then? It may sink below the edge.
     bool hangs = false;
+    // Nodes that the upright edge of a wall has carried along, past its axis and into the wall's face. They lag inside it.
+    std::bitset<block_size> lagging;
+
+    bool may_lag() const { return hangs || lagging.any(); }
+    bool may_lag(std::size_t i) const { return hangs || lagging[i]; }
 };
 
 struct alignas(64) TrussBlockState : BlockFlags {
