@@ -10,6 +10,7 @@ TEST("a skin that is reset is as it was made") {
     TrussState state(mesh);
     TrussBlockState& block = state.block[0];
     block.touching = block.slack = block.met = block.hangs = true;
+    block.lagging.set(3);
     for (BlockColumn* column : {&block.x, &block.deflection, &block.force, &block.peak_deflection,
                                 &block.residual, &block.unloading})
         (*column)[0] += 1.0;
@@ -18,6 +19,7 @@ TEST("a skin that is reset is as it was made") {
     CHECK(!block.slack);
     CHECK(!block.met);
     CHECK(!block.hangs);
+    CHECK(!block.may_lag());
     CHECK(!state.groups[0].hangs);
     Hash as_made, again;
     TrussState(mesh).add_to(as_made);
