@@ -152,26 +152,11 @@ void register_history(py::module_& m) {
         py::call_guard<py::gil_scoped_release>(),
         "Extremes of a run of this vehicle into this barrier, or into none.");
     add_view(history, "time", &History::time, "(n,) s, output instants");
-    add_view(history, "kinetic", &History::kinetic, "(n,) J, kinetic energy of all bodies");
-    add_view(history, "potential", &History::potential,
-             "(n,) J, potential energy of the weight, zero at the start");
-    add_view(history, "stored", &History::stored, "(n,) J, elastic energy in trusses");
-    add_view(history, "crushed", &History::crushed, "(n,) J, energy lost in crushed trusses");
-    add_view(history, "barrier_friction", &History::barrier_friction,
-             "(n,) J, energy lost to friction on the barrier");
-    add_view(history, "tire_friction", &History::tire_friction,
-             "(n,) J, energy lost to friction of tyres on the ground");
-    add_view(history, "ground_friction", &History::ground_friction,
-             "(n,) J, energy lost to friction of the skin on the ground");
-    add_view(history, "impacts", &History::impacts, "(n,) J, energy lost in rigid contacts");
-    add_view(history, "joint_work", &History::joint_work,
-             "(n,) J, energy that joints took: zero but for the error of the steps");
-    add_view(history, "segment_friction", &History::segment_friction,
-             "(n,) J, energy lost to friction of free-standing segments on the ground");
-    add_view(history, "suspension", &History::suspension,
-             "(n,) J, energy in springs of wheels and lost in their dampers");
-    add_view(history, "sliding", &History::sliding, "(n,) J, energy lost where a unit slides on another one");
-    add_view(history, "yielding", &History::yielding, "(n,) J, plastic work of posts that yield");
+    for (std::size_t i = 0; i < energy_terms.size(); ++i)
+        history.def_property_readonly(
+            energy_terms[i].name,
+            [i](const py::object& self) { return view(self.cast<const History&>().energies[i], self); },
+            (std::string("(n,) J, ") + energy_terms[i].meaning).c_str());
     history.def_property_readonly(
         "segment_position",
         [](const History& self) { return of_moving_elements(self, &MovingElementHistory::position); },

@@ -142,16 +142,10 @@ void register_simulation(py::module_& m) {
         .def_property_readonly(
             "falls",
             [](const Balances& balances) {
-                return std::map<std::string, Balances::Departure>{
-                    {"crushed", balances.falls[Balances::crushed]},
-                    {"barrier_friction", balances.falls[Balances::barrier_friction]},
-                    {"tire_friction", balances.falls[Balances::tire_friction]},
-                    {"ground_friction", balances.falls[Balances::ground_friction]},
-                    {"impacts", balances.falls[Balances::impacts]},
-                    {"barrier_ground_friction", balances.falls[Balances::segment_friction]},
-                    {"dampers", balances.falls[Balances::dampers]},
-                    {"sliding", balances.falls[Balances::sliding]},
-                    {"yielding", balances.falls[Balances::yielding]}};
+                std::map<std::string, Balances::Departure> by_name;
+                for (std::size_t i = 0; i < energy_terms.size(); ++i)
+                    if (energy_terms[i].is_loss) by_name[energy_terms[i].name] = balances.falls[i];
+                return by_name;
             },
             "by name, the greatest fall of each dissipated energy below its highest value so far");
 

@@ -66,7 +66,7 @@ int main() {
     std::printf("%-16s %12.5f %12.5f\n", "rebound [m/s]", rebound, exact_rebound);
 
     const Energies& end = simulation.state().energies;
-    const double start = history.kinetic.front();
+    const double start = history.energy(&birm3d::Energies::kinetic).front();
     std::printf(
         "\nenergy [kJ]: %.3f before; after: kinetic %.3f, crushed %.3f, stored %.3f, left over %.1e\n",
         start / 1e3, end.kinetic / 1e3, end.crushed / 1e3, end.stored / 1e3, (end.total() - start) / 1e3);

@@ -545,12 +545,22 @@ class History:
     @property
     def barrier_friction(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J, energy lost to friction on the barrier
+        (n,) J, lost to friction on the barrier
+        """
+    @property
+    def barrier_ground_friction(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) J, lost to friction of free-standing segments on the ground
         """
     @property
     def crushed(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J, energy lost in crushed trusses
+        (n,) J, plastic work in trusses
+        """
+    @property
+    def dampers(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) J, lost in the dampers of wheels
         """
     @property
     def elements(self) -> list[ObstacleHistory]:
@@ -560,17 +570,17 @@ class History:
     @property
     def ground_friction(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J, energy lost to friction of the skin on the ground
+        (n,) J, lost to friction of the skin on the ground
         """
     @property
     def impacts(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J, energy lost in rigid contacts
+        (n,) J, lost in rigid contacts
         """
     @property
-    def joint_work(self) -> numpy.typing.NDArray[numpy.float64]:
+    def joints(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J, energy that joints took: zero but for the error of the steps
+        (n,) J, that joints took: zero but for the error of the steps
         """
     @property
     def kinetic(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -590,12 +600,7 @@ class History:
     @property
     def potential(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J, potential energy of the weight, zero at the start
-        """
-    @property
-    def segment_friction(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n,) J, energy lost to friction of free-standing segments on the ground
+        (n,) J, of the weight, zero at the start
         """
     @property
     def segment_position(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -620,17 +625,17 @@ class History:
     @property
     def sliding(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J, energy lost where a unit slides on another one
+        (n,) J, lost where a unit slides on another one
+        """
+    @property
+    def springs(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) J, in the springs of wheels, less that at rest
         """
     @property
     def stored(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) J, elastic energy in trusses
-        """
-    @property
-    def suspension(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n,) J, energy in springs of wheels and lost in their dampers
         """
     @property
     def time(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -640,7 +645,7 @@ class History:
     @property
     def tire_friction(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J, energy lost to friction of tyres on the ground
+        (n,) J, lost to friction of tyres on the ground
         """
     @property
     def yielding(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -192,7 +192,7 @@ double friction_loss(const Scene& scene, const State& state, const RigidContact&
 void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vector<Twist>& before,
                    const std::vector<Twist>& after, State& state) {
     const auto motion = [&](std::size_t u) { return mean(before[u], after[u]); };
-    double& at_base = scene.tilts() ? state.energies.yielding : state.energies.segment_friction;
+    double& at_base = scene.tilts() ? state.energies.yielding : state.energies.barrier_ground_friction;
     for (std::size_t i = 0; i < kicked.on_base.size(); ++i)
         at_base -= power(kicked.on_base[i], motion(state.units.size() + i));
     for (std::size_t i = 0; i < kicked.on_pins.size(); ++i)

@@ -110,11 +110,8 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e, const
             to[i] += v[i];
     };
     row[at_time] = time;
-    const std::array energies = {
-        e.kinetic,         e.potential, e.stored, e.crushed,          e.barrier_friction,    e.tire_friction,
-        e.ground_friction, e.impacts,   e.joints, e.segment_friction, e.springs + e.dampers, e.sliding,
-        e.yielding};
-    std::copy(energies.begin(), energies.end(), row + at_energies);
+    for (std::size_t i = 0; i < energy_terms.size(); ++i)
+        row[at_energies + i] = e.*energy_terms[i].value;
     row += at_units;
     for (std::size_t u = 0; u < loads.units.size(); ++u) {
         const BodyState& body = loads.bodies ? (*loads.bodies)[u] : loads.units[u].body;

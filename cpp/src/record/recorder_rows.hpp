@@ -6,7 +6,7 @@
 namespace birm3d {
 
 // Where the numbers of a row stand. Energies and bodies at the end of the step, impulses within it.
-enum RowOffset : std::size_t { at_time = 0, at_energies = 1, at_units = 14 };
+enum RowOffset : std::size_t { at_time = 0, at_energies = 1, at_units = at_energies + energy_terms.size() };
 enum UnitOffset : std::size_t {
     at_position = 0,
     at_orientation = 3,  // x, y, z, w

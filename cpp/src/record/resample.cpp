@@ -48,23 +48,21 @@ void Recorder::resample(const Scene& scene, const Channels& wanted, History& his
 }
 
 void Recorder::resample_energies(const OutputInstants& output, History& history) const {
-    std::size_t e = at_energies;
-    for (Column* column :
-         {&history.kinetic, &history.potential, &history.stored, &history.crushed, &history.barrier_friction,
-          &history.tire_friction, &history.ground_friction, &history.impacts, &history.joint_work,
-          &history.segment_friction, &history.suspension, &history.sliding, &history.yielding}) {
-        column->assign(history.time.size(), values_[e]);
+    for (std::size_t i = 0; i < energy_terms.size(); ++i) {
+        const std::size_t e = at_energies + i;
+        Column& column = history.energies[i];
+        column.assign(history.time.size(), values_[e]);
         for (const Span& span : output.span) {
             const double a = values_[span.row * width_ + e], b = values_[(span.row + 1) * width_ + e];
             for (std::size_t k = span.first; k < span.end; ++k)
-                (*column)[k] = a + output.fraction[k] * (b - a);
+                column[k] = a + output.fraction[k] * (b - a);
         }
-        ++e;
     }
 }
 
 // Within a step each energy changes evenly, so that the greatest departure is at an end of a span.
 void Recorder::find_energy_residual(const OutputInstants& output, History& history) const {
+    static_assert(energy_terms[0].value == &Energies::kinetic);
     const double* kinetic = values_.data() + at_energies;
     const auto total = [&](std::size_t row) {
         const double* energies = kinetic + row * width_;

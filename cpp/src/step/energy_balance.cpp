@@ -18,12 +18,11 @@ void note_departure(double size, const Scene& scene, const State& now, Balances:
 void check_energies(const Energies& e, const Scene& scene, const State& now, Balances& balances) {
     note_departure(std::abs(e.total() - balances.total), scene, now, balances.energy);
     balances.at_disposal = std::max(balances.at_disposal, balances.kinetic - e.potential);
-    const std::array<double, Balances::terms> terms{e.crushed,         e.barrier_friction, e.tire_friction,
-                                                    e.ground_friction, e.impacts,          e.segment_friction,
-                                                    e.dampers,         e.sliding,          e.yielding};
-    for (std::size_t i = 0; i < terms.size(); ++i) {
-        note_departure(balances.highest[i] - terms[i], scene, now, balances.falls[i]);
-        balances.highest[i] = std::max(balances.highest[i], terms[i]);
+    for (std::size_t i = 0; i < energy_terms.size(); ++i) {
+        if (!energy_terms[i].is_loss) continue;
+        const double value = e.*energy_terms[i].value;
+        note_departure(balances.highest[i] - value, scene, now, balances.falls[i]);
+        balances.highest[i] = std::max(balances.highest[i], value);
     }
 }
 

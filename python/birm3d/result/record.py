@@ -309,11 +309,11 @@ class RunRecord:
         """
         terms = {name: getattr(self._history, name) for name in _ENERGIES}
         if self._segments:
-            terms["barrier_ground_friction"] = self._history.segment_friction
+            terms["barrier_ground_friction"] = self._history.barrier_ground_friction
         if self.scene.vehicle.joint is not None or self._pinned:
-            terms["joints"] = self._history.joint_work
+            terms["joints"] = self._history.joints
         if self.scene.vehicle.has_springs:
-            terms["suspension"] = self._history.suspension
+            terms["suspension"] = read_only(self._history.springs + self._history.dampers)
         if self.scene.vehicle.slides:
             terms["sliding"] = self._history.sliding
         if self._posts:

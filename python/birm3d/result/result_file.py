@@ -36,8 +36,13 @@ if TYPE_CHECKING:
 
 __all__ = ["FORMAT_VERSION", "read", "save", "write"]
 
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 _FORMAT = "birm3d result"
+_OLD_TERMS = {
+    "joint_work": "joints",
+    "segment_friction": "barrier_ground_friction",
+    "suspension": "springs",
+}
 _LISTED = "elements"  # of the history: records of their own
 _FINAL = ("nodes", "deflection", "peak_deflection", "final_velocity")
 
@@ -139,7 +144,9 @@ def _parts_of_result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray
     event = header.get("event")  # files of 0.1.0 have none
     return dict(
         scene=scene,
-        history=StoredHistory(_values(header["history"], arrays), units, joints, elements),
+        history=StoredHistory(
+            _with_energy_terms(_values(header["history"], arrays)), units, joints, elements
+        ),
         statistics=Stored(_values(header["statistics"], arrays)),
         end_reason=header["end_reason"],
         state_hash=int(header["state_hash"], 16),
@@ -153,6 +160,19 @@ def _parts_of_result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray
         version=header["made_with"]["birm3d"],
         saved_metrics=header["metrics"],
     )
+
+
+def _with_energy_terms(history: dict[str, Any]) -> dict[str, Any]:
+    """Return a history with its energies by today's names.
+
+    Before version 4 of the format, springs and dampers of wheels were one column.
+    """
+    for then, now in _OLD_TERMS.items():
+        if then in history:
+            history[now] = history.pop(then)
+    if "springs" in history:
+        history.setdefault("dampers", np.zeros_like(history["springs"]))
+    return history
 
 
 def _with_normal_force(unit: Stored, scene: Scene) -> Stored:

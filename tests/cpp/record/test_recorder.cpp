@@ -89,19 +89,17 @@ TEST("the energy residual is the greatest of all rows") {
         const History history = simulation.recorder().resample(simulation.scene());
         const auto total = [&history](std::size_t k) {
             double sum = 0.0;
-            for (const Column* column :
-                 {&history.kinetic, &history.potential, &history.stored, &history.crushed,
-                  &history.barrier_friction, &history.tire_friction, &history.ground_friction,
-                  &history.impacts, &history.joint_work, &history.segment_friction, &history.suspension})
-                sum += (*column)[k];
+            for (const Column& column : history.energies)
+                sum += column[k];
             return sum;
         };
         double greatest = 0.0;
         for (std::size_t k = 0; k < history.time.size(); ++k)
             greatest = std::max(greatest, std::abs(total(k) - total(0)));
-        CHECK(history.kinetic_at_start == history.kinetic[0]);
+        CHECK(history.kinetic_at_start == history.energy(&Energies::kinetic)[0]);
         CHECK(greatest > 0.0);
-        CHECK_CLOSE(history.energy_residual, greatest, 1e-14 * history.kinetic[0], "rounding of the sums");
+        CHECK_CLOSE(history.energy_residual, greatest, 1e-14 * history.energy(&Energies::kinetic)[0],
+                    "rounding of the sums");
     }
 }
 
@@ -110,8 +108,8 @@ TEST("a run of no steps has one row") {
                                                   laboratory::wall(), laboratory::weightless()));
     const History history = simulation.recorder().resample(simulation.scene());
     CHECK(history.time.size() == 1);
-    CHECK_CLOSE(history.kinetic[0], 0.5 * 6804.0 * 22.352 * 22.352, 1e-6, "rounding");
-    CHECK(history.kinetic_at_start == history.kinetic[0]);
+    CHECK_CLOSE(history.energy(&Energies::kinetic)[0], 0.5 * 6804.0 * 22.352 * 22.352, 1e-6, "rounding");
+    CHECK(history.kinetic_at_start == history.energy(&Energies::kinetic)[0]);
     CHECK(history.energy_residual == 0.0);
     CHECK(history.units[0].barrier_force[0] == Vec3::Zero());
 }

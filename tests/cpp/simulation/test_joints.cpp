@@ -307,7 +307,7 @@ TEST("m a is the sum of the forces for each unit, the joint's among them") {
         largest = std::max(largest, history.joints[0].force[k].norm());
     }
     CHECK(largest > 1e5);
-    CHECK_CLOSE(history.joint_work.back(), energies.joints, 1e-6 * start, "the last row");
+    CHECK_CLOSE(history.energy(&Energies::joints).back(), energies.joints, 1e-6 * start, "the last row");
 }
 
 TEST("joints that can not be are refused") {

@@ -56,6 +56,14 @@ struct JointHistory {
 };
 
 struct History {
+    // Of one term of the energy balance (J).
+    const Column& energy(double Energies::* term) const {
+        std::size_t i = 0;
+        while (energy_terms[i].value != term)
+            ++i;
+        return energies[i];
+    }
+
     Column time;  // s
     Vec3
         towards;  // unit vector: towards the barrier, square to its line; of a path along the line that of the path
@@ -64,10 +72,8 @@ struct History {
     std::vector<JointHistory> joints;
     // Of a barrier that moves, in the order of its elements.
     std::vector<MovingElementHistory> moving_elements;
-    Column kinetic, potential, stored, crushed;                                    // J
-    Column barrier_friction, tire_friction, ground_friction, impacts, joint_work;  // J
-    Column segment_friction, suspension, sliding, yielding;                        // J
-    double kinetic_at_start = 0.0;                                                 // at the first instant (J)
+    std::array<Column, energy_terms.size()> energies;  // in the order of energy_terms (J)
+    double kinetic_at_start = 0.0;                     // at the first instant (J)
     double energy_residual =
         0.0;  // greatest departure of the sum of all energies from that at that instant (J)
     double momentum_residual = 0.0;  // max |m a - sum of forces| / max |force|, over all units

@@ -2,27 +2,13 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 
 #include "birm3d/base/types.hpp"
+#include "birm3d/state/energies.hpp"
 
 namespace birm3d {
 
 struct Balances {
-    // Dissipated energies: none of them may ever decrease.
-    enum Term : std::size_t {
-        crushed,
-        barrier_friction,
-        tire_friction,
-        ground_friction,
-        impacts,
-        segment_friction,
-        dampers,
-        sliding,
-        yielding,
-        terms
-    };
-
     // The greatest so far; time 0 where there is none (J or N s).
     struct Departure {
         double size = 0.0;
@@ -37,9 +23,10 @@ struct Balances {
         0.0;             // greatest so far of the initial kinetic energy plus the work of the weight (J)
     Departure energy;    // of the sum of all terms from `total` (J)
     Departure momentum;  // of a unit's momentum change in a step from the impulses on it (N s)
-    double largest_momentum = 0.0;        // of a unit, or an impulse in a step: the scale of `momentum` (N s)
-    std::array<double, terms> highest{};  // greatest value of each dissipated energy so far (J)
-    std::array<Departure, terms> falls;   // decrease of each below that value (J)
+    double largest_momentum = 0.0;  // of a unit, or an impulse in a step: the scale of `momentum` (N s)
+    // In the order of energy_terms, of losses: the greatest value so far, and the decrease below that (J).
+    std::array<double, energy_terms.size()> highest{};
+    std::array<Departure, energy_terms.size()> falls;
 };
 
 }  // namespace birm3d

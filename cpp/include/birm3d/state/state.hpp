@@ -9,6 +9,7 @@
 #include "birm3d/state/balances.hpp"
 #include "birm3d/state/body_state.hpp"
 #include "birm3d/state/contacts.hpp"
+#include "birm3d/state/energies.hpp"
 #include "birm3d/state/truss_state.hpp"
 
 namespace birm3d {
@@ -38,30 +39,6 @@ struct UnitState : UnitMotion {
     }
 
     TrussState trusses;
-};
-
-// Energies in J, from zero but for `kinetic`. Losses grow. `kinetic`, `potential`, `stored` and `springs` rise and fall; `joints`
-// is zero up to the error of the steps.
-struct Energies {
-    double kinetic = 0.0;
-    double potential = 0.0;         // of gravity, zero at the start
-    double stored = 0.0;            // elastic, in trusses
-    double crushed = 0.0;           // plastic, in trusses
-    double barrier_friction = 0.0;  // lost to friction on the barrier
-    double tire_friction = 0.0;     // lost to friction of tyres on the ground
-    double ground_friction = 0.0;   // lost to friction of the skin on the ground
-    double impacts = 0.0;           // lost in rigid contacts
-    double joints = 0.0;            // work of joint forces
-    double segment_friction = 0.0;  // lost to friction of free-standing segments on the ground
-    double springs = 0.0;           // in the springs of wheels, less that at rest
-    double dampers = 0.0;           // lost in the dampers of wheels
-    double sliding = 0.0;           // lost where a unit slides on another one
-    double yielding = 0.0;          // plastic work of posts that yield
-
-    double total() const {
-        return kinetic + potential + stored + crushed + barrier_friction + tire_friction + ground_friction +
-               impacts + joints + segment_friction + springs + dampers + sliding + yielding;
-    }
 };
 
 // How the steps went so far.
