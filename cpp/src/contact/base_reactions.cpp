@@ -40,7 +40,7 @@ struct PlanarAxes {
 // Lists the segments with their motions without friction and pins, and a first guess of the motions with both.
 void list_slabs(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
     const std::size_t units = state.units.size();
-    std::vector<PinnedSlab>& slabs = memory.slabs;
+    std::vector<PinnedSlab>& slabs = memory.segments.slabs;
     slabs.resize(state.moving_elements.size());
     for (std::size_t i = 0; i < slabs.size(); ++i) {
         const MovingElement& element = scene.barrier->moving_elements[i];
@@ -48,7 +48,7 @@ void list_slabs(const Scene& scene, const KickedBy& by, const State& state, Kick
         PinnedSlab& slab = slabs[i];
         slab.mass = element.body.mass;
         slab.inertia = element.body.inertia(2, 2);
-        slab.limit = memory.limits[i];
+        slab.limit = memory.segments.limits[i];
         const PlanarAxes axes(body.orientation);
         for (std::size_t c = 0; c < slab.arm.size(); ++c)
             slab.arm[c] = element.corner[c].x() * axes.x + element.corner[c].y() * axes.y;
@@ -89,20 +89,20 @@ Wrench wrench_along_ground(const Vec3& push) {
 }
 
 void find_pinned_friction(const KickedBy& by, KickMemory& memory) {
-    memory.chain.solve(memory.slabs, memory.pins, by.drift);
-    for (std::size_t i = 0; i < memory.slabs.size(); ++i) {
-        memory.element_motions[i] = memory.chain.motions()[i];
-        memory.kick.on_base[i] = wrench_along_ground(memory.chain.frictions()[i]);
-        memory.kick.on_pins[i] = wrench_along_ground(memory.chain.pulls()[i]);
+    memory.segments.chain.solve(memory.segments.slabs, memory.segments.pins, by.drift);
+    for (std::size_t i = 0; i < memory.segments.slabs.size(); ++i) {
+        memory.segments.motions[i] = memory.segments.chain.motions()[i];
+        memory.kick.on_base[i] = wrench_along_ground(memory.segments.chain.frictions()[i]);
+        memory.kick.on_pins[i] = wrench_along_ground(memory.segments.chain.pulls()[i]);
     }
 }
 
 void find_loose_friction(const Scene& scene, KickMemory& memory) {
-    for (std::size_t i = 0; i < memory.slabs.size(); ++i) {
-        const PinnedSlab& slab = memory.slabs[i];
+    for (std::size_t i = 0; i < memory.segments.slabs.size(); ++i) {
+        const PinnedSlab& slab = memory.segments.slabs[i];
         Wrench& friction = memory.kick.on_base[i];
         friction = {};
-        memory.element_motions[i] = slab.motion;
+        memory.segments.motions[i] = slab.motion;
         if (slab.motion.isZero(0.0)) continue;
         const RigidBody& body = scene.barrier->moving_elements[i].body;
         std::array<Vec3, 4> arm;
@@ -110,8 +110,8 @@ void find_loose_friction(const Scene& scene, KickMemory& memory) {
             arm[c] = {slab.arm[c].x(), slab.arm[c].y(), 0.0};
         const Vec3& v = slab.motion;
         friction = slide_friction(body, arm, slab.limit, {Vec3(v.x(), v.y(), 0.0), Vec3(0.0, 0.0, v.z())});
-        memory.element_motions[i].head<2>() += body.inverse_mass * friction.force.head<2>();
-        memory.element_motions[i].z() += body.inverse_inertia(2, 2) * friction.torque.z();
+        memory.segments.motions[i].head<2>() += body.inverse_mass * friction.force.head<2>();
+        memory.segments.motions[i].z() += body.inverse_inertia(2, 2) * friction.torque.z();
     }
 }
 
@@ -127,27 +127,27 @@ bool meets_moving_element(const std::vector<RigidContact>& contacts) {
 
 void find_base_reactions(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
     if (scene.tilts()) return find_plastic_moments(scene, by, state, memory);
-    find_limits(scene, by.pressed, memory.kick, memory.limits);
+    find_limits(scene, by.pressed, memory.kick, memory.segments.limits);
     list_slabs(scene, by, state, memory);
-    memory.element_motions.resize(state.moving_elements.size());
+    memory.segments.motions.resize(state.moving_elements.size());
     memory.kick.on_base.resize(state.moving_elements.size());
     memory.kick.on_pins.assign(state.moving_elements.size(), {});
     if (!is_pinned(scene) || state.moving_elements.size() == 1) return find_loose_friction(scene, memory);
-    list_pins(scene, state, memory.pins);
+    list_pins(scene, state, memory.segments.pins);
     find_pinned_friction(by, memory);
 }
 
 void move_elements(const Scene& scene, const KickMemory& memory, State& state) {
-    if (scene.tilts()) return move_posts(scene, memory, state);
+    if (scene.tilts()) return move_posts(scene, memory.posts, state);
     // Fraction of the speed that friction can remove from a segment, below which a remaining speed is rounding.
     constexpr double left_over = 1e-4;
     for (std::size_t i = 0; i < state.moving_elements.size(); ++i) {
         const MovingElement& element = scene.barrier->moving_elements[i];
-        const Vec3& motion = memory.element_motions[i];
+        const Vec3& motion = memory.segments.motions[i];
         BodyState& body = state.moving_elements[i];
         const double fastest =
             motion.head<2>().norm() + std::abs(motion.z()) * element.corner[0].head<2>().norm();
-        const bool rests = fastest <= left_over * element.body.inverse_mass * memory.limits[i];
+        const bool rests = fastest <= left_over * element.body.inverse_mass * memory.segments.limits[i];
         body.velocity = body.angular_momentum = Vec3::Zero();
         if (rests) continue;
         body.velocity.head<2>() = motion.head<2>();
@@ -161,12 +161,12 @@ std::size_t add_pin_rows(const Scene& scene, const State& state, const KickMemor
     const std::size_t before = rows.size(), first = scene.vehicle->joints.size();
     const std::size_t units = state.units.size();
     for (std::size_t i = 0; i + 1 < state.moving_elements.size(); ++i) {
-        if (!memory.chain.is_awake(i) || !memory.chain.is_awake(i + 1)) continue;
+        if (!memory.segments.chain.is_awake(i) || !memory.segments.chain.is_awake(i + 1)) continue;
         const std::size_t row = rows.size();
         find_joint_rows(scene.joints[first + i], first + i, state.moving_elements[i],
                         state.moving_elements[i + 1], rows);
         const auto motion_at = [&](std::size_t element, const Vec3& arm) {
-            const Vec3& motion = memory.element_motions[element];
+            const Vec3& motion = memory.segments.motions[element];
             return Vec3(motion.x() - arm.y() * motion.z(), motion.y() + arm.x() * motion.z(), 0.0);
         };
         for (std::size_t r = row; r < rows.size(); ++r)

@@ -15,7 +15,7 @@ bool pushes_moving_element(const RigidContact& contact);
 bool meets_moving_element(const std::vector<RigidContact>& contacts);
 
 // Finds ground friction and pin impulses, or the impulses of plastic moments, for the present impulses of
-// `memory.kick.contacts` and `memory.kick.on_cores`. Stores them in `memory.kick` and `memory.element_motions`. `state` has
+// `memory.kick.contacts` and `memory.kick.on_cores`. Stores them in `memory.kick` and `memory.segments.motions`. `state` has
 // the elements' motions without any of these.
 void find_base_reactions(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory);
 

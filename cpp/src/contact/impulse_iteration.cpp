@@ -100,7 +100,7 @@ void prepare_solver(const Scene& scene, const State& state, KickMemory& memory) 
     std::erase_if(memory.kick.contacts,
                   [&](const RigidContact& row) { return row.body >= state.units.size(); });
     add_pin_rows(scene, state, memory, memory.kick.contacts);
-    memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
+    memory.iteration.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
 }
 
 // Starts an iteration without friction from the present motions. Notes how fast the surfaces move on which bottomed-out
@@ -109,15 +109,15 @@ void begin_iteration(const State& state, KickMemory& memory) {
     ContactKick& kicked = memory.kick;
     kicked.on_ground.assign(state.units.size(), {});
     kicked.on_cores.assign(memory.bodies.size(), {});
-    list_motions(state, memory.bodies, memory.pushed);
+    list_motions(state, memory.bodies, memory.motions.pushed);
     for (RigidContact& contact : kicked.contacts) {
         if (!pushes_moving_element(contact)) continue;
         const Twist& other = sliding_motions(memory)[static_cast<std::size_t>(contact.other)];
         contact.sliding_surface = other.velocity + other.angular_velocity.cross(contact.other_arm);
     }
-    memory.tire.resize(state.units.size());
-    memory.last.clear();
-    memory.on_base.clear();
+    memory.iteration.tire.resize(state.units.size());
+    memory.iteration.last.clear();
+    memory.iteration.on_base.clear();
 }
 
 // Finds the normal impulses that belong to the present friction.
@@ -131,12 +131,12 @@ void solve_normal_impulses(const Scene& scene, const KickedBy& by, bool meets, c
     for (int changes = 0;; ++changes) {
         set_motions_with_friction(state, memory.kick, memory.bodies);
         add_sliding_impulses(memory.kick.contacts, memory.bodies);
-        memory.solver.solve(memory.kick.contacts, memory.bodies);
+        memory.iteration.solver.solve(memory.kick.contacts, memory.bodies);
         if (changes == most_changes) break;
         const bool slides = decide_sliding(by.time, memory.bodies, memory.kick.contacts);
         const bool yields = meets_posts && decide_yielding(scene, by, state, memory);
         if (!slides && !yields) break;
-        memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
+        memory.iteration.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
     }
     sum_tire_impulses(scene, by, memory);
 }
@@ -153,8 +153,8 @@ void kick_by_normal_impulses(const Scene& scene, ContactKick& kicked, State& sta
     }
 }
 
-// Finds normal impulses and friction by turns, and kicks the bodies by them. `memory.solver` is prepared. At given friction,
-// the normal impulses j and the relative velocities w after them fulfil
+// Finds normal impulses and friction by turns, and kicks the bodies by them. `memory.iteration.solver` is prepared. At given
+// friction, the normal impulses j and the relative velocities w after them fulfil
 //   w = A j + v >= v_target,  j >= 0,  (w - v_target) . j = 0,
 // v: without j, A: change by each unit of j. That is for one contact Eq. 1 of the paper ("Rigid bodies and impulses" in
 // docs/pages/theory.md). Friction depends on j. It also
@@ -170,9 +170,9 @@ void solve_with_friction(const Scene& scene, const KickedBy& by, KickMemory& mem
     find_held_motions(scene, by, memory);
     constexpr int most_rounds = 30;
     for (int round = 0; round < most_rounds; ++round) {
-        const bool normal_converged = has_converged(kicked.contacts, memory.last);
+        const bool normal_converged = has_converged(kicked.contacts, memory.iteration.last);
         const bool base_converged =
-            !meets || (round > 0 && has_converged(kicked.on_base, scene.tilts(), memory.on_base));
+            !meets || (round > 0 && has_converged(kicked.on_base, scene.tilts(), memory.iteration.on_base));
         if (round > 0 && normal_converged && base_converged) break;
         kick_by_friction(scene, by, memory, state);
         if (meets && !meets_posts) find_base_reactions(scene, by, state, memory);
@@ -215,13 +215,13 @@ void kick_by_contacts(const Scene& scene, const KickedBy& by, KickMemory& memory
         memory.kick.on_cores.clear();
         return;
     }
-    memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
+    memory.iteration.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
     solve_with_friction(scene, by, memory, state);
 }
 
 void kick_towards_closed_joints(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
     if (scene.vehicle->joints.empty()) return kick_by_contacts(scene, by, memory, state);
-    memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
+    memory.iteration.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
     memory.kick.on_base.clear();
     memory.kick.on_pins.clear();
     std::vector<BodyState> start;

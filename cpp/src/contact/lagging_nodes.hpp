@@ -1,8 +1,8 @@
 // Skin that hangs over the top of a wall can sink into the wall with the vehicle. The top edge later releases such a node inside
 // the wall: it lags behind the wall's faces. So does skin beside a post whose indentation has vanished: free nodes may be
 // inside the post. And so does skin that an upright edge has pushed aside by less than its flank: past the edge's axis it is
-// inside the face (TrussBlockState::lagging). A face moves such a node only by as much as the face itself moves. To push it out at once
-// would crush its truss by energy that the body never lost.
+// inside the face (TrussBlockState::lagging). A face moves such a node only by as much as the face itself moves. To push it
+// out at once would crush its truss by energy that the body never lost.
 #pragma once
 
 #include "contact/contact_pass.hpp"

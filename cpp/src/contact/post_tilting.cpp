@@ -37,30 +37,31 @@ Vec3 plastic_impulse(const MovingElement& post, const BodyState& body, const Vec
 
 void find_plastic_moments(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
     const std::size_t count = state.moving_elements.size();
-    std::vector<Vec3>& momenta = memory.element_motions;
+    std::vector<Vec3>& momenta = memory.posts.momenta;
     sum_momenta(state, memory, momenta);
+    memory.posts.angular_velocities.resize(count);
     memory.kick.on_base.assign(count, {});
     memory.kick.on_pins.assign(count, {});
     for (std::size_t i = 0; i < count; ++i) {
         const MovingElement& post = scene.barrier->moving_elements[i];
         Vec3& impulse = memory.kick.on_base[i].torque;
         impulse = plastic_impulse(post, state.moving_elements[i], momenta[i], by.time);
-        momenta[i] = post.body.inverse_inertia(0, 0) * (momenta[i] + impulse);
+        memory.posts.angular_velocities[i] = post.body.inverse_inertia(0, 0) * (momenta[i] + impulse);
     }
 }
 
 void begin_holding_posts(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
-    memory.posts_held.resize(state.moving_elements.size());
-    for (std::size_t i = 0; i < memory.posts_held.size(); ++i) {
-        memory.posts_held[i] = by.from[state.units.size() + i].angular_velocity.isZero(0.0) ? 1 : 0;
-        set_body(scene, state, i, memory.posts_held[i] != 0, memory);
+    memory.posts.held.resize(state.moving_elements.size());
+    for (std::size_t i = 0; i < memory.posts.held.size(); ++i) {
+        memory.posts.held[i] = by.from[state.units.size() + i].angular_velocity.isZero(0.0) ? 1 : 0;
+        set_body(scene, state, i, memory.posts.held[i] != 0, memory);
     }
 }
 
 bool decide_yielding(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
     // Relative change of an impulse that counts.
     constexpr double settled = 1e-6;
-    std::vector<Vec3>& momenta = memory.element_motions;
+    std::vector<Vec3>& momenta = memory.posts.momenta;
     sum_momenta(state, memory, momenta);
     bool any = false;
     for (std::size_t i = 0; i < momenta.size(); ++i) {
@@ -68,14 +69,14 @@ bool decide_yielding(const Scene& scene, const KickedBy& by, const State& state,
         const Vec3 now =
             plastic_impulse(scene.barrier->moving_elements[i], state.moving_elements[i], momenta[i], by.time);
         const bool yields = now.squaredNorm() < momenta[i].squaredNorm();
-        const bool was_held = memory.posts_held[i] != 0;
+        const bool was_held = memory.posts.held[i] != 0;
         const bool drives = !was_held && (momenta[i] + impulse).dot(impulse) > 0.0;
         const bool turns = !was_held && yields && (now - impulse).norm() > settled * now.norm();
         const bool is_held = was_held ? !yields : drives;
         if (is_held == was_held && !turns) continue;
         any = true;
         impulse = now;
-        memory.posts_held[i] = is_held ? 1 : 0;
+        memory.posts.held[i] = is_held ? 1 : 0;
         set_body(scene, state, i, is_held, memory);
     }
     return any;
@@ -86,10 +87,10 @@ void free_posts(const Scene& scene, const State& state, KickMemory& memory) {
         set_body(scene, state, i, false, memory);
 }
 
-void move_posts(const Scene& scene, const KickMemory& memory, State& state) {
+void move_posts(const Scene& scene, const PostMemory& posts, State& state) {
     for (std::size_t i = 0; i < state.moving_elements.size(); ++i)
         state.moving_elements[i].angular_momentum =
-            scene.barrier->moving_elements[i].body.inertia(0, 0) * memory.element_motions[i];
+            scene.barrier->moving_elements[i].body.inertia(0, 0) * posts.angular_velocities[i];
 }
 
 }  // namespace birm3d

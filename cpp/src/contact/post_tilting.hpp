@@ -16,10 +16,10 @@ namespace birm3d {
 Vec3 plastic_impulse(const MovingElement& post, const BodyState& body, const Vec3& momentum, double time);
 
 // Finds the impulses of the plastic moments for the present impulses of `memory.kick.contacts` and `memory.kick.on_cores`.
-// Stores them in `memory.kick.on_base`, and the angular velocities in `memory.element_motions`.
+// Stores them in `memory.kick.on_base`, and the angular velocities in `memory.posts.angular_velocities`.
 void find_plastic_moments(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory);
 
-// Posts that stood still before the kick are held at first. Sets `memory.posts_held` and the bodies of the solver.
+// Posts that stood still before the kick are held at first. Sets `memory.posts.held` and the bodies of the solver.
 void begin_holding_posts(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory);
 
 // After the solver: a held post yields where the moment exceeds the plastic one. A post that yields is held where the plastic
@@ -30,6 +30,6 @@ bool decide_yielding(const Scene& scene, const KickedBy& by, const State& state,
 void free_posts(const Scene& scene, const State& state, KickMemory& memory);
 
 // Sets the posts' motions to those found. A post that its moment holds gets exactly zero velocity.
-void move_posts(const Scene& scene, const KickMemory& memory, State& state);
+void move_posts(const Scene& scene, const PostMemory& posts, State& state);
 
 }  // namespace birm3d

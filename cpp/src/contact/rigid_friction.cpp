@@ -49,27 +49,27 @@ bool any_friction(const ContactKick& kicked) {
 }
 
 void sum_tire_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory) {
-    for (std::size_t u = 0; u < memory.tire.size(); ++u) {
-        memory.tire[u].assign(scene.vehicle->units[u].wheels.size(), 0.0);
+    for (std::size_t u = 0; u < memory.iteration.tire.size(); ++u) {
+        memory.iteration.tire[u].assign(scene.vehicle->units[u].wheels.size(), 0.0);
         if (by.is_impact) continue;
         for (const SuspensionLoad& load : memory.sprung[u])
-            memory.tire[u][load.wheel] += by.time * (load.spring + load.damper);
+            memory.iteration.tire[u][load.wheel] += by.time * (load.spring + load.damper);
     }
     for (const RigidContact& contact : memory.kick.contacts)
         if (contact.source == ContactSource::tire)
-            memory.tire[contact.body][contact.index] += contact.impulse;
+            memory.iteration.tire[contact.body][contact.index] += contact.impulse;
 }
 
 const std::vector<Twist>& sliding_motions(const KickMemory& memory) {
-    return memory.sliding.empty() ? memory.pushed : memory.sliding;
+    return memory.motions.sliding.empty() ? memory.motions.pushed : memory.motions.sliding;
 }
 
 void find_held_motions(const Scene& scene, const KickedBy& by, KickMemory& memory) {
-    memory.held.clear();
+    memory.iteration.held.clear();
     if (scene.vehicle->joints.empty() || by.is_impact) return;
-    memory.held = memory.pushed;
+    memory.iteration.held = memory.motions.pushed;
     const auto add = [&](std::size_t b, const Wrench& push) {
-        add_impulse(memory.bodies[b], push, memory.held[b]);
+        add_impulse(memory.bodies[b], push, memory.iteration.held[b]);
     };
     for (const RigidContact& contact : memory.kick.contacts) {
         add(contact.body, wrench_on_body(contact));
@@ -81,7 +81,7 @@ void kick_by_friction(const Scene& scene, const KickedBy& by, KickMemory& memory
     ContactKick& kicked = memory.kick;
     const std::size_t units = state.units.size();
     const std::vector<Twist>& motion = sliding_motions(memory);
-    std::vector<Wrench>& on_cores = memory.on_cores;
+    std::vector<Wrench>& on_cores = memory.iteration.on_cores;
     on_cores.assign(memory.bodies.size(), {});
     for (std::size_t u = 0; u < units; ++u) {
         const Unit& unit = scene.vehicle->units[u];
@@ -91,11 +91,11 @@ void kick_by_friction(const Scene& scene, const KickedBy& by, KickMemory& memory
         if (!rolls_freely) {
             Wrench all = kicked.on_ground[u];
             all += kicked.on_cores[u];
-            const bool is_held = !memory.held.empty();
-            const Twist& now = is_held ? memory.held[u] : motion[u];
+            const bool is_held = !memory.iteration.held.empty();
+            const Twist& now = is_held ? memory.iteration.held[u] : motion[u];
             on_ground =
                 without_reversal(tire_friction(unit, scene.settings, body, state.units[u].steering_angle,
-                                               {now, by.at_end[u]}, memory.tire[u]),
+                                               {now, by.at_end[u]}, memory.iteration.tire[u]),
                                  memory.bodies[u], is_held ? now : motion_without(all, memory.bodies[u]));
         }
         on_cores[u] = core_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u],

@@ -8,10 +8,10 @@ namespace birm3d {
 // Motions of the bodies at which contacts slide.
 const std::vector<Twist>& sliding_motions(const KickMemory& memory);
 
-// Sums the normal impulses of the tyres by wheel, in memory.tire (N s). Springs and dampers take no part in an impact.
+// Sums the normal impulses of the tyres by wheel, in memory.iteration.tire (N s). Springs and dampers take no part in an impact.
 void sum_tire_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory);
 
-// Finds memory.held: motions of the bodies with the normal impulses and those of joints, without friction. Springs push
+// Finds memory.iteration.held: motions of the bodies with the normal impulses and those of joints, without friction. Springs push
 // joined units apart, and the joint resists. Without its impulse, tyres would seem to slide.
 void find_held_motions(const Scene& scene, const KickedBy& by, KickMemory& memory);
 

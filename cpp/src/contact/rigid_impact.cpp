@@ -75,7 +75,7 @@ class ImpactAttempts {
           least_(-rounding * kinetic_energy_of(scene, trial.state)) {
         list_body_states(state_, start_);
         memory_.kick.rolls_freely.assign(state_.units.size(), 0);
-        memory_.sliding.clear();
+        memory_.motions.sliding.clear();
     }
 
     void settle(double restitution) {
@@ -105,10 +105,11 @@ class ImpactAttempts {
     void attempt(double restitution) {
         for (std::size_t b = 0; b < start_.size(); ++b)
             body_state(state_, b) = start_[b];
-        list_motions(state_, memory_.bodies, memory_.pushed);
+        list_motions(state_, memory_.bodies, memory_.motions.pushed);
         memory_.kick.contacts = contacts_;
         set_impact_targets(restitution, reach_, fastest_, memory_.bodies, memory_.kick.contacts);
-        const std::span<const Twist> rolling = memory_.sliding.empty() ? before_ : memory_.sliding;
+        const std::span<const Twist> rolling =
+            memory_.motions.sliding.empty() ? before_ : memory_.motions.sliding;
         kick_by_contacts(scene_,
                          {.pressed = Column(state_.moving_elements.size()),
                           .at_end = rolling,
@@ -144,11 +145,11 @@ class ImpactAttempts {
 
     // Lets friction act against the mean of the motions before and after, or half way towards it.
     void redirect_friction() {
-        const bool first = memory_.sliding.empty();
-        if (first) memory_.sliding.resize(before_.size());
+        const bool first = memory_.motions.sliding.empty();
+        if (first) memory_.motions.sliding.resize(before_.size());
         for (std::size_t b = 0; b < before_.size(); ++b) {
             const Twist middle = mean(before_[b], after_[b]);
-            memory_.sliding[b] = first ? middle : mean(memory_.sliding[b], middle);
+            memory_.motions.sliding[b] = first ? middle : mean(memory_.motions.sliding[b], middle);
         }
     }
 
@@ -202,7 +203,7 @@ void impact_at_once(const Scene& scene, Stage stage, double reach, const std::ve
     if (!start) keep(scene, state, impact);
     ImpactAttempts(scene, reach, fastest, before, after, trial).settle(scene.settings.restitution);
     memory.kick.rolls_freely.clear();
-    memory.sliding.clear();
+    memory.motions.sliding.clear();
     add_impulses(scene, state, memory.kick, impact.impulses, impact.joint_impulses);
     book_contacts(scene, memory.kick, before, after, state);
     if (start) keep(scene, state, impact);

@@ -58,32 +58,54 @@ struct ContactKick {
     std::vector<char> rolls_freely;  // (units) is the friction of its tyres left out? Empty: of no unit
 };
 
-// Work buffers of half kicks, so that a step allocates nothing. Their values hold within one half kick only.
+// Motions of all bodies in a half kick.
+struct KickMotions {
+    std::vector<Twist> before, pushed,
+        after;                   // before the kick, with the forces, and with the rigid contacts, too
+    std::vector<Twist> rolling;  // in the drift: tyres roll or slide by them
+    std::vector<Twist> start;    // before the first half kick of the step
+    // Those that the friction of an impact acts against; empty: those before it.
+    std::vector<Twist> sliding;
+};
+
+// Of the rounds in which impulses and friction are found, see impulse_iteration.hpp.
+struct ImpulseRounds {
+    ImpulseSolver solver;
+    std::vector<Twist> held;                // (bodies) motions with the impulses of joints
+    std::vector<Column> tire;               // (units) normal impulses by wheel (N s)
+    Column last;                            // normal impulses of the round before (N s)
+    std::vector<Wrench> on_cores, on_base;  // friction of the round before
+};
+
+// Of free-standing segments, see base_reactions.hpp.
+struct SegmentMemory {
+    std::vector<PinnedSlab> slabs;
+    std::vector<SlabPin> pins;
+    SlabChain chain;
+    Column limits;              // of friction on the ground (N s)
+    std::vector<Vec3> motions;  // along the ground and about the vertical
+};
+
+// Of posts that yield, see post_tilting.hpp.
+struct PostMemory {
+    std::vector<Vec3> momenta;             // angular, without the plastic moments (N m s)
+    std::vector<Vec3> angular_velocities;  // with them (rad/s)
+    std::vector<char> held;                // do they stand still?
+};
+
+// Work buffers of half kicks, so that a step allocates nothing. Their values hold within one half kick only, apart from
+// KickMotions::start.
 struct KickMemory {
     std::vector<RigidContact> contacts;
     std::vector<PlacedShape> placed;
     std::vector<std::size_t> about;
     std::vector<ContactBody> bodies;
-    std::vector<Twist> before, pushed, rolling, after;  // motions of the bodies
-    std::vector<Twist> start;                           // the same before the first half kick of the step
-    std::vector<std::vector<SuspensionLoad>> sprung;    // (units) loads of the wheels that stand on springs
-    std::vector<Twist>
-        sliding;  // motions that the friction of an impact acts against; empty: those before it
+    std::vector<std::vector<SuspensionLoad>> sprung;  // (units) loads of the wheels that stand on springs
     ContactKick kick;
-    // Buffers of the search for impulses.
-    ImpulseSolver solver;
-    std::vector<Twist> held;  // (bodies) motions with the impulses of joints
-    std::vector<Column> tire;
-    Column last;
-    std::vector<Wrench> on_cores, on_base;
-    // Of free-standing segments.
-    std::vector<PinnedSlab> slabs;
-    std::vector<SlabPin> pins;
-    SlabChain chain;
-    Column limits;  // of friction on the ground (N s)
-    std::vector<Vec3>
-        element_motions;           // along the ground and about the vertical; of posts angular velocities
-    std::vector<char> posts_held;  // (posts that yield) do they stand still?
+    KickMotions motions;
+    ImpulseRounds iteration;
+    SegmentMemory segments;
+    PostMemory posts;
 };
 
 // Some of the blocks of a mesh.

@@ -58,12 +58,12 @@ double time_to_impact(double negligible, std::span<const ContactBody> bodies,
 // the first one did. So damping has an error of second order.
 void find_sprung_wheels(const Scene& scene, const State& state, Stage stage, KickMemory& memory) {
     if (!scene.settings.ground) return;
-    if (stage == Stage::before_drift) memory.start = memory.before;
+    if (stage == Stage::before_drift) memory.motions.start = memory.motions.before;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         if (!has_springs(scene.vehicle->units[u])) continue;
-        Twist motion = memory.before[u];
-        motion.velocity += motion.velocity - memory.start[u].velocity;
-        motion.angular_velocity += motion.angular_velocity - memory.start[u].angular_velocity;
+        Twist motion = memory.motions.before[u];
+        motion.velocity += motion.velocity - memory.motions.start[u].velocity;
+        motion.angular_velocity += motion.angular_velocity - memory.motions.start[u].angular_velocity;
         find_suspension_loads(scene.vehicle->units[u], state.units[u].body, motion, state.units[u].given_way,
                               memory.sprung[u]);
     }
@@ -155,21 +155,21 @@ void kick_unconstrained(const Scene& scene, Stage stage, double half, Trial& tri
     });
     if (has_friction) {
         list_bodies(scene, state, memory.bodies);
-        list_motions(state, memory.bodies, memory.before);
+        list_motions(state, memory.bodies, memory.motions.before);
     }
     kick_by_forces(scene, stage, half, trial);
     if (!has_friction) return;
-    list_motions(state, memory.bodies, memory.pushed);
-    add_friction_work(scene, memory.before, memory.pushed, half, state);
+    list_motions(state, memory.bodies, memory.motions.pushed);
+    add_friction_work(scene, memory.motions.before, memory.motions.pushed, half, state);
 }
 
-// Applies the impacts at the start of the step, and sets memory.before to the motions after them. With fixed steps, all
+// Applies the impacts at the start of the step, and sets memory.motions.before to the motions after them. With fixed steps, all
 // impacts of the coming step happen at its start, before any point can pass its surface.
 void impact_before_drift(const Scene& scene, const StepOptions& options, Trial& trial) {
     KickMemory& memory = trial.memory;
     const double reach = options.locate_impacts ? 0.0 : trial.dt;
-    impact_at_once(scene, Stage::before_drift, reach, memory.before, memory.after, trial);
-    if (trial.at_start.happened) std::swap(memory.before, memory.after);
+    impact_at_once(scene, Stage::before_drift, reach, memory.motions.before, memory.motions.after, trial);
+    if (trial.at_start.happened) std::swap(memory.motions.before, memory.motions.after);
 }
 
 // Impulses of rigid contacts before the drift: they keep points from passing their surfaces, and close joints.
@@ -177,8 +177,8 @@ void kick_rigid_contacts_before(const Scene& scene, const Column& pressed, Trial
     KickMemory& memory = trial.memory;
     set_drift_targets(trial.dt, memory.bodies, trial.state, memory.kick.contacts);
     const KickedBy by{.pressed = pressed,
-                      .at_end = memory.before,
-                      .from = memory.before,
+                      .at_end = memory.motions.before,
+                      .from = memory.motions.before,
                       .time = 0.5 * trial.dt,
                       .drift = trial.dt};
     kick_towards_closed_joints(scene, by, memory, trial.state);
@@ -190,9 +190,11 @@ void kick_rigid_contacts_after(const Scene& scene, const Column& pressed, Trial&
     KickMemory& memory = trial.memory;
     keep_lasting_contacts(trial.dt, scene.settings.gravity, trial.impulses, memory.bodies,
                           memory.kick.contacts);
-    combine(memory.pushed, 1.0, trial.by_contacts, memory.rolling);
-    const KickedBy by{
-        .pressed = pressed, .at_end = memory.rolling, .from = memory.before, .time = 0.5 * trial.dt};
+    combine(memory.motions.pushed, 1.0, trial.by_contacts, memory.motions.rolling);
+    const KickedBy by{.pressed = pressed,
+                      .at_end = memory.motions.rolling,
+                      .from = memory.motions.before,
+                      .time = 0.5 * trial.dt};
     kick_by_contacts(scene, by, memory, trial.state);
 }
 
@@ -200,9 +202,9 @@ void kick_rigid_contacts_after(const Scene& scene, const Column& pressed, Trial&
 void book_half_kick(const Scene& scene, double half, Trial& trial) {
     State& state = trial.state;
     KickMemory& memory = trial.memory;
-    add_friction_work(scene, memory.before, memory.after, half, state);
-    add_damper_work(memory.sprung, memory.before, memory.after, half, state.energies);
-    book_contacts(scene, memory.kick, memory.before, memory.after, state);
+    add_friction_work(scene, memory.motions.before, memory.motions.after, half, state);
+    add_damper_work(memory.sprung, memory.motions.before, memory.motions.after, half, state.energies);
+    book_contacts(scene, memory.kick, memory.motions.before, memory.motions.after, state);
 }
 
 }  // namespace
@@ -216,9 +218,8 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     if (memory.contacts.empty() && state.moving_elements.empty())
         return kick_unconstrained(scene, stage, half, trial);
 
-    // memory.before, .pushed and .after: motions before the kick, with the forces, and with the rigid contacts, too.
     list_bodies(scene, state, memory.bodies);
-    list_motions(state, memory.bodies, memory.before);
+    list_motions(state, memory.bodies, memory.motions.before);
     if (is_first)
         impact_before_drift(scene, options, trial);
     else
@@ -228,7 +229,7 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
         contact.is_impact = approaches_hard(contact, memory.bodies);
     find_sprung_wheels(scene, state, stage, memory);
     const Column pressed = kick_by_forces(scene, stage, half, trial);
-    list_motions(state, memory.bodies, memory.pushed);
+    list_motions(state, memory.bodies, memory.motions.pushed);
     if (is_first && options.locate_impacts)
         trial.impact_after =
             time_to_impact(tolerance::resting_approach * trial.dt, memory.bodies, memory.contacts);
@@ -240,11 +241,11 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     else
         kick_rigid_contacts_after(scene, pressed, trial);
     add_impulses(scene, state, memory.kick, trial.impulses, trial.joint_impulses);
-    list_motions(state, memory.bodies, memory.after);
-    if (is_first) combine(memory.after, -1.0, memory.pushed, trial.by_contacts);
+    list_motions(state, memory.bodies, memory.motions.after);
+    if (is_first) combine(memory.motions.after, -1.0, memory.motions.pushed, trial.by_contacts);
     book_half_kick(scene, half, trial);
 
-    if (!is_first) impact_at_once(scene, stage, 0.0, memory.after, memory.before, trial);
+    if (!is_first) impact_at_once(scene, stage, 0.0, memory.motions.after, memory.motions.before, trial);
 }
 
 }  // namespace birm3d
