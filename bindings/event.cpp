@@ -18,6 +18,7 @@ namespace {
 std::string verdict(const Event& event) {
     constexpr std::array names = {"undecided", "stopped",    "redirected",
                                   "passed",    "overridden", "rolled_over"};
+    static_assert(names.size() == static_cast<std::size_t>(Verdict::rolled_over) + 1);
     return names.at(static_cast<std::size_t>(event.outcome()));
 }
 
@@ -25,6 +26,7 @@ std::string manner(const Event& event) {
     constexpr std::array names = {
         "no_barrier", "moving",  "rests_untouched", "rests",        "rebounds", "leaves", "slides_to_end",
         "slides_on",  "between", "beside",          "rests_beyond", "over",     "slow"};
+    static_assert(names.size() == static_cast<std::size_t>(Manner::slow) + 1);
     return names.at(static_cast<std::size_t>(event.manner));
 }
 

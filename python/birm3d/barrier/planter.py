@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
@@ -52,13 +51,13 @@ class PlanterKind(RoundedBlock):
 
     def elements(self) -> list[_core.Element]:
         """Return the blocks from low y to high y, then their parts."""
-        for name in ("length", "width", "height"):
+        for name in ("length", "width", "height", "spacing"):
             positive_and_finite(name, getattr(self, name))
         if self.count > MOST_ELEMENTS:
             raise ValueError(f"count must be at most {MOST_ELEMENTS:,} planters, got {self.count}")
-        if self.count > 1 and not (math.isfinite(self.spacing) and self.spacing > self.length):
+        if self.count > 1 and not self.spacing > self.length:
             raise ValueError(
-                f"spacing must be finite and above the length ({self.length:g} m), got {self.spacing}"
+                f"spacing must be above the length ({self.length:g} m), got {self.spacing}"
             )
         self.check_edges()
         blocks = [self.block_elements(self.height, along, i) for i, along in enumerate(self.places())]
