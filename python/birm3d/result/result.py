@@ -124,6 +124,8 @@ class Result(RunAnalysis):
         ------
         ValueError
             If there is no such point or part; the message names those that there are.
+        UnitWarning
+            As a warning, if a place in plain numbers is more than 1 m outside the box about the part's skin.
         """
         return place_sensor(self, point, part)
 
