@@ -196,7 +196,7 @@ def _warn_if_far(unit: Vehicle, point: Sequence[Quantity], place: Sequence[float
     low, high = unit.skin_bounds
     box = np.minimum(low, 0.0) + unit.center_of_mass, np.maximum(high, 0.0) + unit.center_of_mass
     stated = [isinstance(value, (str, Stated)) for value in point]
-    warn_if_far_from_skin(place, *(bounds.tolist() for bounds in box), stated)
+    warn_if_far_from_skin(place, box[0].tolist(), box[1].tolist(), stated)
 
 
 def _unit_of(units: Sequence[Vehicle], part: str | int) -> int:
