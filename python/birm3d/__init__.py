@@ -38,7 +38,9 @@ if TYPE_CHECKING:
     from .result.energy_balance import BalanceWarning
     from .result.leaning_posts import LeaningPostWarning
     from .result.load_map import LoadMap
+    from .result.load_map_comparison import LoadMapComparison, compare_load_maps
     from .result.low_barrier import LowBarrierWarning
+    from .result.measured_cells import measured_load_map, read_load_cells
     from .result.missed import MissedBarrierWarning
     from .result.overlap import OverlapWarning
     from .result.result import load, write_capsule
@@ -90,6 +92,7 @@ __all__ = [
     "LeaningPostWarning",
     "Limit",
     "LoadMap",
+    "LoadMapComparison",
     "LowBarrierWarning",
     "MassWarning",
     "MissedBarrierWarning",
@@ -117,6 +120,7 @@ __all__ = [
     "calibration",
     "check_channel",
     "compare_curves",
+    "compare_load_maps",
     "critical_impact_point",
     "design_load",
     "dossier",
@@ -130,6 +134,7 @@ __all__ = [
     "least_segment_mass",
     "least_tube_thickness",
     "load",
+    "measured_load_map",
     "metrics",
     "monte_carlo",
     "occupant_risk",
@@ -138,6 +143,7 @@ __all__ = [
     "rate",
     "read_csv_channels",
     "read_iso_mme",
+    "read_load_cells",
     "read_nhtsa",
     "readers",
     "reference",
@@ -173,6 +179,7 @@ _WHERE = {
     "LeaningPostWarning": "result.leaning_posts:LeaningPostWarning",
     "Limit": "study.limit_search:Limit",
     "LoadMap": "result.load_map:LoadMap",
+    "LoadMapComparison": "result.load_map_comparison:LoadMapComparison",
     "LowBarrierWarning": "result.low_barrier:LowBarrierWarning",
     "MassWarning": "vehicle.mass_check:MassWarning",
     "MissedBarrierWarning": "result.missed:MissedBarrierWarning",
@@ -200,6 +207,7 @@ _WHERE = {
     "calibration": "calibration",
     "check_channel": "signals.channel_checks:check_channel",
     "compare_curves": "signals.compare:compare_curves",
+    "compare_load_maps": "result.load_map_comparison:compare_load_maps",
     "critical_impact_point": "study.impact_point:critical_impact_point",
     "design_load": "assessment.design_load:design_load",
     "dossier": "reporting:dossier",
@@ -213,6 +221,7 @@ _WHERE = {
     "least_segment_mass": "study.design_limits:least_segment_mass",
     "least_tube_thickness": "study.design_limits:least_tube_thickness",
     "load": "result.result:load",
+    "measured_load_map": "result.measured_cells:measured_load_map",
     "metrics": "result.metrics",
     "monte_carlo": "study.monte_carlo:monte_carlo",
     "occupant_risk": "assessment:occupant_risk",
@@ -221,6 +230,7 @@ _WHERE = {
     "rate": "assessment.rate:rate",
     "read_csv_channels": "signals.readers:read_csv_channels",
     "read_iso_mme": "signals.readers:read_iso_mme",
+    "read_load_cells": "result.measured_cells:read_load_cells",
     "read_nhtsa": "signals.readers:read_nhtsa",
     "readers": "signals.readers",
     "reference": "signals.reference",

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .barrier.barrier import Barrier
     from .calibration.result import CalibrationResult
     from .result.load_map import LoadMap
+    from .result.load_map_comparison import LoadMapComparison
     from .result.result import Result
     from .scene.scene import Scene
     from .signals.compare import CurveComparison
@@ -54,6 +55,7 @@ __all__ = [
     "plot_history_bands",
     "plot_limit",
     "plot_load_map",
+    "plot_load_map_comparison",
     "plot_plan",
     "plot_profiles",
     "plot_requested_vs_achieved",
@@ -249,6 +251,13 @@ def plot_load_map(map_: LoadMap, time: float | None) -> Figure:
     from .plotting.load_maps import plot_load_map
 
     return plot_load_map(map_, time)
+
+
+def plot_load_map_comparison(comparison: LoadMapComparison, quantity: str) -> Figure:
+    """Return a picture of a measured load map, a computed one and their difference."""
+    from .plotting.load_map_comparison import plot_load_map_comparison
+
+    return plot_load_map_comparison(comparison, quantity)
 
 
 def plot_history_bands(bands: HistoryBands) -> Figure:

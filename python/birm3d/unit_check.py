@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -18,6 +18,7 @@ __all__ = [
     "Usual",
     "given",
     "warn_if_any_unusual",
+    "warn_if_far_from_skin",
     "warn_if_mesh_unusual",
     "warn_if_unusual",
 ]
@@ -85,6 +86,8 @@ USUAL: Mapping[str, Usual] = MappingProxyType(
 
 # Of a mesh from its foot to its top [m]; how long it is says less.
 _MESH_HEIGHT = Usual(0.001, 100.0, "m", "mm")
+# How far from the box about the skin a gauge may be [m]: masts and loads stand out of it.
+_OUT_OF_SKIN = 1.0
 # Of a round angle in radians: multiples of 5 deg, within this [rad].
 _ROUND, _NEAR = math.pi / 36.0, 1e-3
 
@@ -162,6 +165,27 @@ def warn_if_mesh_unusual(height: float) -> None:
         f"accepted without this warning is {_MESH_HEIGHT.low:g} to {_MESH_HEIGHT.high:g} m; vertices in "
         "millimetres are 1e-3 * vertices in m",
     )
+
+
+def warn_if_far_from_skin(
+    point: Sequence[float], low: Sequence[float], high: Sequence[float], stated: Sequence[bool]
+) -> None:
+    """Warn with :class:`UnitWarning` of a point more than 1 m outside a box: the skin's, in the file's axes.
+
+    Of the coordinates (x, y, z) [m] the first one that is outside is named. Those whose unit was stated are
+    left alone.
+    """
+    for axis, value, least, most, meant in zip("xyz", point, low, high, stated, strict=True):
+        first, last = least - _OUT_OF_SKIN, most + _OUT_OF_SKIN
+        if meant or not math.isfinite(value) or first <= value <= last:
+            continue
+        _warn(
+            f"point with {axis} = {value:g} m",
+            "in another unit or in other axes than the vehicle's file",
+            f"accepted without this warning is {axis} from {first:.2f} to {last:.2f} m, which is within "
+            f"{_OUT_OF_SKIN:g} m of the skin, or text with its unit, as '{value:g} mm'",
+        )
+        return
 
 
 def _is_round_in_radians(angle: float) -> bool:

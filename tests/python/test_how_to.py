@@ -69,6 +69,10 @@ rate = None
     + """
 simulation = birm3d.Simulation(car, wall, 10.0)
 slow, fast = simulation.run(), birm3d.Simulation(car, wall, 14.0).run()
+with open("wall.csv", "w") as file:
+    print("time [ms]", *(f"{row}{n} [kN]" for row in "ABC" for n in (1, 2, 3, 4)), sep=",", file=file)
+    for ms in range(101):
+        print(ms, *[ms * (100 - ms) / 100] * 12, sep=",", file=file)
 """,
     "studies": """
 car, wall = birm3d.Vehicle.preset("pickup", gvw=2300.0), birm3d.Barrier.rigid_wall()

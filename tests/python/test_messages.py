@@ -79,6 +79,7 @@ ELSEWHERE = {
     *(
         "HistoryBands",
         "LoadMap",
+        "LoadMapComparison",
         "Limit",
         "Prediction",
         "Rating",
@@ -318,10 +319,26 @@ def assessments(car: Vehicle, semi: Vehicle, slow: Result, folder: Path) -> dict
         "Result.load_map": (hit.load_map, {"cell": 0.25, "lateral": [-1.0, 0.0, 1.0]}),
         "LoadMap.at": (hit.load_map().at, {"time": 0.01}),
         "LoadMap.plot": (hit.load_map().plot, {"time": 0.01}),
+        **load_cells(hit),
         "rerun": (birm3d.rerun, {"path": capsule}),
         "write_capsule": (birm3d.write_capsule, {"result": slow, "path": folder / "copy.birm3d"}),
         "dossier": (birm3d.dossier, {"result": slow, "folder": folder / "dossier"}),
         "relative_to_start": (metrics.relative_to_start, {"scene": row.scene, "energy": 1.0, "start": 1.0}),
+    }
+
+
+def load_cells(hit: Result) -> dict[str, Call]:
+    """The same of measured load maps and their comparison."""
+    one = Channel("A1", TIME, np.sin(TIME), "N")
+    edges: dict[str, Any] = {"lateral": [0.0, 1.0], "height": [0.0, 1.0]}
+    computed = hit.load_map()
+    both = birm3d.compare_load_maps(computed, computed)
+    return {
+        "measured_load_map": (birm3d.measured_load_map, {"channels": {"A1": one}, **edges}),
+        "compare_load_maps": (birm3d.compare_load_maps, {"measured": computed, "computed": computed}),
+        "LoadMapComparison.plot": (both.plot, {"quantity": "peak"}),
+        "LoadMapComparison.values": (both.values, {"quantity": "peak"}),
+        "LoadMapComparison.difference": (both.difference, {"quantity": "peak"}),
     }
 
 

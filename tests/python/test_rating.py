@@ -147,7 +147,7 @@ def test_penetration_classes(past: float, penetration_class: str | None, old: st
     """A point far before the mass centre gets so far past the wall of 0.5 m."""
     result = head_on(units.km_h(80.0), block(6800.0, 3e7))
     reach = float(result.position[:, 0].max())
-    point = (past + 0.5 - reach, 0.0, 0.6)
+    point = (units.Stated(past + 0.5 - reach), 0.0, 0.6)  # metres are meant
     new = rate(result, "ASTM F2656", vehicle_class="M", reference_point=point)
     assert new.penetration == pytest.approx(past, abs=1e-9)
     expected = f"M50-{penetration_class}" if penetration_class else "no rating: penetration class"
@@ -177,7 +177,7 @@ def test_code_strings(standard, code, mass, speed, past, designation) -> None:
     """Strings as on certificates: V/7200[N2A]/64/90:1.5 and V/7500[N3]/80/90:10.5 are of products."""
     result = head_on(units.km_h(speed), block(mass, 3e3 * mass))
     datum = 0.0 if SECURITY[standard].datum == "front" else 0.5
-    point = (past + datum - float(result.position[:, 0].max()), 0.0, 0.6)
+    point = (units.Stated(past + datum - float(result.position[:, 0].max())), 0.0, 0.6)
     assert rate(result, standard, vehicle_class=code, reference_point=point).designation == designation
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
+import warnings
 from collections.abc import Callable
 
 import birm3d
 import numpy as np
 import pytest
-from birm3d import Barrier, Result, Settings, Simulation, Vehicle, units
+from birm3d import Barrier, Result, Settings, Simulation, UnitWarning, Vehicle, scenes, units
 from birm3d.vehicle.vehicle_file import VehicleFileError
 from scipy.spatial.transform import Rotation
 
@@ -164,6 +166,48 @@ def test_a_loaded_result_has_the_same_sensors(pickup_on_jersey: Result, tmp_path
 def test_bad_input(pickup_on_jersey: Result, call: Callable[[Result], object], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         call(pickup_on_jersey)
+
+
+@pytest.mark.parametrize(
+    ("point", "part", "named"),
+    [
+        ((100.0, 0.0, 0.0), None, "x = 100 m"),
+        ((-600.0, 0.0, 0.8), None, "x = -600 m"),
+        ((0.0, -850.0, 0.8), None, "y = -850 m"),
+        ((0.0, 0.0, 6.0), None, "z = 6 m"),
+        ((-20.0, 0.0, 1.0), "semi_tractor", "x = -20 m"),  # of the trailer, in the tractor's axes
+    ],
+)
+def test_a_point_far_outside_the_skin_is_warned_of(
+    pickup_on_jersey: Result, semi_truck: Result, point, part: str | None, named: str
+) -> None:
+    result = semi_truck if part else pickup_on_jersey
+    with pytest.warns(UnitWarning, match=f"point with {named} is most likely in another unit") as told:
+        sensor = result.sensor(point, part)
+    assert sensor.point.tolist() == list(point)
+    (one,) = told
+    assert one.filename == __file__
+    axis = "xyz".index(named[0])
+    unit = result.scene.vehicle.units[0]
+    edges = np.array([bound[axis] for bound in unit.skin_bounds]) + unit.center_of_mass[axis]
+    said = re.findall(r"from ([-.\d]+) to ([-.\d]+) m", str(one.message))[0]
+    assert [float(number) for number in said] == pytest.approx([edges[0] - 1.0, edges[1] + 1.0], abs=0.006)
+
+
+def test_a_point_within_a_metre_of_the_skin_or_with_its_unit_is_not_warned_of(semi_truck: Result) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for i, unit in enumerate(semi_truck.scene.vehicle.units):
+            low, high = unit.skin_bounds
+            for corner in (low - 0.99, high + 0.99):
+                semi_truck.sensor((corner + unit.center_of_mass).tolist(), i)
+        semi_truck.sensor(("30 m", 0.0, "-5000 mm"))
+        # A skin that is a front alone: the mass centre is 3 m behind it, and counts too.
+        block = scenes.laboratory_block(16, k_initial=3e6, knee=0.4, k_unloading=6e7)
+        front = Simulation(block, Barrier.rigid_wall(), 5.0).run()
+        assert block.skin_bounds[0][0] == 3.0
+        front.sensor((0.0, 0.0, 0.5))
+        front.sensor((units.Stated(-9.0), 0.0, 0.5))
 
 
 def test_points_of_the_files() -> None:

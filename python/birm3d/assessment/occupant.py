@@ -78,7 +78,7 @@ def occupant_risk(
     yaw_rate
         Positive to the left; needed for THIV and PHD only.
     time_zero
-        Instant of the impact in the channels' time [s].
+        Instant of the first contact in the channels' time [s].
     head_x
         Of the theoretical head before `point` at time zero [m]; ``None``: that of the vehicle's point
         ``driver_head``, if its file has one, else 0.
@@ -91,7 +91,8 @@ def occupant_risk(
     ------
     ValueError
         If there is neither a result nor channels, or both. If a channel is missing, measures something else
-        or does not hold time zero. If nothing is hit, or the record ends while the vehicle is still pushed.
+        or does not hold time zero. If it changes the velocity by more than 0.3 m/s before time zero, nothing
+        is hit, or the record ends while the vehicle is still pushed.
     """
     channels = {"x": x, "y": y, "z": z, "yaw_rate": yaw_rate}
     if edition not in (1998, 2010):

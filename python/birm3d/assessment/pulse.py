@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from .. import units
 from ..signals.channel import Channel
+from .time_zero import require_rest_before
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -144,7 +145,8 @@ def pulse_of_channels(channels: Mapping[str, Channel | float | None], time_zero:
     Raises
     ------
     ValueError
-        If there is no channel, one measures another quantity, or the records do not hold time zero.
+        If there is no channel, one measures another quantity, the records do not hold time zero, or the
+        velocity changes before it.
     """
     given = {name: value for name, value in channels.items() if isinstance(value, Channel)}
     for name, value in channels.items():
@@ -169,6 +171,8 @@ def pulse_of_channels(channels: Mapping[str, Channel | float | None], time_zero:
                 f"time of {name} must hold time zero, the instant of the impact ({time_zero:g} s; see "
                 f"Channel.shifted), got {channel.name!r} from {first:g} to {last:g} s"
             )
+        if name in AXES:
+            require_rest_before(name, channel, time_zero)
     leading = next(iter(given.values()))
     interval = leading.interval
     first = max(float(channel.time[0]) for channel in given.values()) - time_zero

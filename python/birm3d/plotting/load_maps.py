@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
@@ -17,11 +19,13 @@ from .style import wrapped
 if TYPE_CHECKING:
     from ..result.load_map import LoadMap
 
-__all__ = ["plot_load_map"]
+__all__ = ["draw_cells", "plot_load_map"]
 
 Floats = npt.NDArray[np.float64]
 
-_MOST_TEXTS = 120  # maps of more cells have no numbers in them
+_LEAST_TOP = 1e-12  # of colours and numbers, where there is no load
+_LEAST_TEXT = 5e-3  # cells below this share of the greatest value have no number
+_MOST_TEXTS = 128  # maps of more cells than a wall of 8 x 16 have no numbers in them
 _NARROW = 0.6  # width over height of a map below which its panels stand side by side
 _FLAT, _FLAT_SIDE = 0.12, 0.4  # height over width, and width over height, below which scales are not equal
 _MOST_COLUMNS = 60  # cells of maps with more columns have no edge
@@ -51,8 +55,9 @@ def plot_load_map(map_: LoadMap, time: float | None = None) -> Figure:
     ratio = float(np.ptp(map_.height) / np.ptp(lateral))
     figure, axes = _panels(len(panels), ratio)
     for panel, (head, label, values) in zip(axes, panels, strict=True):
-        _draw(figure, panel, lateral, map_.height, values[:, columns] / 1e3, label)
-        panel.set_aspect("equal" if _FLAT < ratio < 1.0 / _FLAT_SIDE else "auto")
+        shown = values[:, columns] / 1e3
+        cells = draw_cells(panel, lateral, map_.height, shown, float(shown.max(initial=0.0)))
+        figure.colorbar(cells, ax=panel, label=label)
         panel.set_title(head, fontsize="medium")
     text = map_.title
     if columns != slice(0, len(map_.lateral) - 1):
@@ -81,26 +86,37 @@ def _panels(count: int, ratio: float) -> tuple[Figure, Sequence[Axes]]:
     return figure, list(figure.subplots(count, 1, squeeze=False)[:, 0])
 
 
-def _draw(figure: Figure, axes: Axes, lateral: Floats, height: Floats, values: Floats, label: str) -> None:
-    top = max(float(values.max(initial=0.0)), 1e-12)
+def draw_cells(
+    axes: Axes, lateral: Floats, height: Floats, values: Floats, greatest: float, *, signed: bool = False
+) -> QuadMesh:
+    """Draw cells as the vehicle sees them, with their numbers where there are few.
+
+    Colours run from 0 to the greatest value of the map, or of all maps on this scale; those of signed values
+    from minus to plus their own greatest magnitude. Scales are equal unless the map is very flat or narrow.
+    """
+    top = max(float(np.abs(values).max()) if signed else greatest, _LEAST_TOP)
     edge = 0.4 if values.shape[1] <= _MOST_COLUMNS else 0.0
     cells = axes.pcolormesh(
-        lateral, height, values, cmap="YlOrRd", vmin=0.0, vmax=top, edgecolors="0.8", linewidth=edge
-    )
-    figure.colorbar(cells, ax=axes, label=label)
+        lateral, height, values, cmap="RdBu_r" if signed else "YlOrRd", vmin=-top if signed else 0.0,
+        vmax=top, edgecolors="0.8", linewidth=edge,
+    )  # fmt: skip
     # Ticks change with the room that is left: labels of one width leave room for them beforehand.
     axes.yaxis.set_major_formatter("{x:.2f}")
     axes.xaxis.set_major_locator(MaxNLocator(8 if np.ptp(lateral) > np.ptp(height) else 3))
     axes.invert_xaxis()
     axes.set_xlabel("along the barrier's line [m]")
     axes.set_ylabel("height [m]")
-    if values.size > _MOST_TEXTS:
-        return
+    ratio = float(np.ptp(height) / np.ptp(lateral))
+    axes.set_aspect("equal" if _FLAT < ratio < 1.0 / _FLAT_SIDE else "auto")
+    if values.size > _MOST_TEXTS or greatest < _LEAST_TOP:
+        return cells
+    decimals = max(0, 1 - math.floor(math.log10(greatest)))  # two digits of the greatest value
     for i, j in np.ndindex(*values.shape):
         value = float(values[i, j])
-        if value < 5e-3 * top:
+        if abs(value) < max(_LEAST_TEXT * greatest, 0.5 * 0.1**decimals):
             continue
+        text = f"{value:{'+' if signed else ''},.{decimals}f}".replace("-", "\u2212")
         place = (lateral[j : j + 2].mean(), height[i : i + 2].mean())
-        color = "w" if value > _DARK * top else "k"
-        text = f"{value:,.0f}" if value >= 10.0 else f"{value:.2g}"
+        color = "w" if abs(value) > _DARK * top else "k"
         axes.text(*place, text, ha="center", va="center", fontsize="x-small", color=color)
+    return cells

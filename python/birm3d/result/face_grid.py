@@ -13,7 +13,7 @@ from .face_loads import SPREAD, FaceStep
 from .record import RunRecord
 from .unit_result import read_only
 
-__all__ = ["USUAL_CELL", "cells_of", "face_grid", "forces_of_cells"]
+__all__ = ["USUAL_CELL", "cells_of", "edges_of_cells", "face_grid", "forces_of_cells"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -50,15 +50,26 @@ def face_grid(
         side *= 2.0
 
 
+def edges_of_cells(name: str, given: npt.ArrayLike) -> Floats:
+    """Return edges of cells as a read-only array (n,).
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two, or they do not increase.
+    """
+    edges = array(name, given, "n")
+    if len(edges) < 2 or not (np.diff(edges) > 0.0).all():
+        raise ValueError(f"{name} must have at least 2 edges that increase, got {edges.tolist()}")
+    return read_only(edges)
+
+
 def _edges(
     name: str, given: npt.ArrayLike | None, side: float, places: list[Floats], *, from_foot: bool
 ) -> Floats:
     """Return the edges that were given, else those of as many cells as hold all places."""
     if given is not None:
-        edges = array(name, given, "n")
-        if len(edges) < 2 or not (np.diff(edges) > 0.0).all():
-            raise ValueError(f"{name} must have at least 2 edges that increase, got {edges.tolist()}")
-        return read_only(edges)
+        return edges_of_cells(name, given)
     all_ = np.concatenate(places)
     low, high = (float(all_.min()) - SPREAD, float(all_.max()) + SPREAD) if len(all_) else (0.0, side)
     if from_foot and low >= -SPREAD:

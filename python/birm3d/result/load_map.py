@@ -12,55 +12,54 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import pictures
-from ..barrier.fronts import Front
-from ..base.arguments import checked
 from ..io.atomic_write import whole_file
-from ..scene.text import scene_text
 from ..signals.filters import cfc, moving_average
 from ..units import Quantity, si
-from .barrier_fronts import front_of
-from .element_loads import element_loads
-from .face_grid import USUAL_CELL, cells_of, face_grid, forces_of_cells
-from .face_loads import SPREAD, FaceStep, face_steps
-from .record import RunRecord
 from .unit_result import read_only
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["LoadMap", "load_map"]
+__all__ = ["LoadMap"]
 
 Floats = npt.NDArray[np.float64]
 
-_LEAST_CELL = 0.01  # m
-_REST = 0.03  # of the greatest force; what nodes do not account for below it is an error of interpolation
 _CLASS = 60.0  # SAE J211-1, barrier forces
 
 
 class LoadMap:
-    """Force on the cells of a grid over a barrier's front; made by :meth:`birm3d.Result.load_map`.
+    """Force on the cells of a grid over a barrier's front.
+
+    Computed by :meth:`birm3d.Result.load_map`; measured, see :func:`birm3d.read_load_cells`.
 
     Attributes
     ----------
     time : ndarray, shape (n,)
-        Of the result's rows [s].
+        Of the result's rows, or of the record's [s].
     lateral, height : ndarray, shape (columns + 1,), (rows + 1,)
         Edges of the cells: along the line from the barrier's origin, and above its foot [m]. Seen by the
         vehicle the columns run from right to left, as y does.
     force : ndarray, shape (n, rows, columns)
-        Across the line, into the barrier, means over the output interval [N]. Friction along it is not in it.
+        Across the line, into the barrier [N]. Computed ones are means over the output interval, measured
+        ones are samples. Friction along the line is not in it.
     outside : ndarray, shape (n,)
         Force that no cell has, where edges were given and the vehicle pushes beside them [N].
     title : str
-        Of the scene, as figures have it.
+        Of the scene, as figures have it; of a measured one the name of its file.
+    cfc : float or None
+        Channel frequency class that measured forces have been filtered to; ``None``: none.
+    first_contact : float
+        Instant at which the vehicle touches the cells [s]; of measured ones 0, their time zero.
     """
 
     def __init__(
-        self, time: Floats, lateral: Floats, height: Floats, force: Floats, outside: Floats, title: str
-    ) -> None:
+        self, time: Floats, lateral: Floats, height: Floats, force: Floats, outside: Floats, title: str,
+        cfc: float | None = None, first_contact: float | None = None,
+    ) -> None:  # fmt: skip
         self.time, self.lateral, self.height = time, lateral, height
         self.force, self.outside = read_only(force), read_only(outside)
-        self.title = title
+        self.title, self.cfc = title, cfc
+        self.first_contact = self._first_force() if first_contact is None else first_contact
 
     @property
     def interval(self) -> float:
@@ -70,12 +69,22 @@ class LoadMap:
     @cached_property
     def resultant(self) -> Floats:
         """Sum of all cells and of what is outside them, shape (n,) [N]."""
-        return read_only(self.force.sum(axis=(1, 2)) + self.outside)
+        return read_only(self.sum_of_cells + self.outside)
+
+    @cached_property
+    def sum_of_cells(self) -> Floats:
+        """Without what is outside them, shape (n,) [N]."""
+        return read_only(self.force.sum(axis=(1, 2)))
 
     @cached_property
     def impulse(self) -> Floats:
         """Of each cell, shape (rows, columns) [N s]."""
         return read_only(self.force[1:].sum(axis=0) * self.interval)
+
+    def _first_force(self) -> float:
+        """Return the last instant before there is a force; the end where there is none."""
+        loaded = np.flatnonzero(self.resultant > 0.0)
+        return float(self.time[max(0, int(loaded[0]) - 1)] if len(loaded) else self.time[-1])
 
     @cached_property
     def peak(self) -> Floats:
@@ -83,10 +92,18 @@ class LoadMap:
 
         Where the output interval is too long for that class, the greatest of the unfiltered means.
         """
-        cells = self.force.reshape(len(self.time), -1)
-        if self.interval * _CLASS <= 0.1:
-            cells = np.column_stack([cfc(cell, _CLASS, self.interval) for cell in cells.T])
+        cells = self._after_cfc60(self.force.reshape(len(self.time), -1))
         return read_only(cells.max(axis=0).reshape(self.force.shape[1:]))
+
+    @cached_property
+    def sum_cfc60(self) -> Floats:
+        """Sum of the cells after CFC 60, as :attr:`peak` has it, shape (n,) [N]."""
+        return read_only(self._after_cfc60(self.sum_of_cells))
+
+    def _after_cfc60(self, rows: Floats) -> Floats:
+        """Return rows (n,) or (n, k) after CFC 60: as they are if they have it, or lie too far apart."""
+        as_is = self.cfc == _CLASS or self.interval * _CLASS > 0.1
+        return rows if as_is else cfc(rows, _CLASS, self.interval)
 
     @cached_property
     def peak_50ms(self) -> Floats:
@@ -101,11 +118,13 @@ class LoadMap:
         Raises
         ------
         ValueError
-            If the instant is outside the run.
+            If the instant is outside the run or the record.
         """
         instant = si("time", time, "time")
-        if not 0.0 <= instant <= self.time[-1]:
-            raise ValueError(f"time must be within the run, 0 to {self.time[-1]:g} s, got {instant:g}")
+        if not self.time[0] <= instant <= self.time[-1]:
+            raise ValueError(
+                f"time must be within the run, {self.time[0]:g} to {self.time[-1]:g} s, got {instant:g}"
+            )
         return read_only(self.force[int(np.argmin(np.abs(self.time - instant)))])
 
     def to_csv(self, path: str | Path) -> None:
@@ -147,149 +166,6 @@ class LoadMap:
     def __repr__(self) -> str:
         rows, columns = self.impulse.shape
         return f"LoadMap({rows} x {columns} cells, {self.impulse.sum():.4g} N s)"
-
-
-@checked
-def load_map(
-    result: RunRecord,
-    cell: Quantity | None = None,
-    *,
-    lateral: npt.ArrayLike | None = None,
-    height: npt.ArrayLike | None = None,
-) -> LoadMap:
-    """Return the force on the cells of a grid over the front of a fixed barrier.
-
-    The scene is run once more. At each step the force of every node on the front counts in the cell where the
-    node then is. Between steps forces are linear in time. In each row the cells are scaled to the force that
-    the result has across the line, so that they add up to it. Forces of the rigid body and of tyres have no
-    nodes. They count in one cell, whose place follows from the moments of the barrier's load.
-
-    Of a sloped face the force across the line counts, not that square to the face. Of posts in one row each
-    has a column of cells; a node's force is on the nearest post, at the node's height, and the column is
-    scaled to the post's own force.
-
-    Parameters
-    ----------
-    cell
-        Side of the square cells [m], at least 0.01; they begin at the wall's foot and at its origin.
-        ``None``: 0.25 m, doubled where the map of a long run would have more than 30 million numbers.
-    lateral, height
-        Increasing edges of the cells [m], instead of square ones: those of a load-cell wall.
-
-    Raises
-    ------
-    ValueError
-        If the barrier is a mesh, stands free or has several rows of posts. If the cells are too small, their
-        edges do not increase, or are given for posts. If the scene does not run the same way again.
-    """
-    front = front_of(result.scene.barrier)
-    side = USUAL_CELL if cell is None else si("cell", cell, "length")
-    if not side >= _LEAST_CELL:
-        raise ValueError(f"cell must be >= {_LEAST_CELL} m, got {side:g}")
-    if front.columns is not None:
-        if lateral is not None:
-            raise ValueError("lateral must be None for posts, of which each has one column, got edges")
-        lateral = front.columns
-    steps = face_steps(result, front)
-    edges = face_grid(result, steps, lateral, height, side, front.top, doubled=cell is None)
-    edges_y, edges_z = edges
-    shape = (len(edges_z) - 1, len(edges_y) - 1)
-    spread = SPREAD if front.columns is None else 0.0
-    cells = _in_time(result.time, steps, edges, front.top, spread)
-    if front.columns is None:
-        force = _completed(result, front, steps, cells, edges)
-    else:
-        force = _completed_posts(result, front, cells, edges)
-    inner = force[:, :-1].reshape(-1, *shape)
-    return LoadMap(result.time, edges_y, edges_z, inner, force[:, -1], scene_text(result.scene, "\n"))
-
-
-def _in_time(
-    time: Floats, steps: list[FaceStep], edges: tuple[Floats, Floats], top: float, spread: float
-) -> Floats:
-    """Return the forces of cells, and outside them, in the middles of the result's rows, (n, cells + 1)."""
-    count = (len(edges[0]) - 1) * (len(edges[1]) - 1) + 1
-    quarters = [(a, h) for a in (-spread, spread) for h in (-SPREAD, SPREAD)]
-    at_ends = np.array([forces_of_cells(step, quarters, edges, top, count) for step in steps])
-    ends = np.array([step.time for step in steps])
-    middles = _middles(time)
-    place = np.clip(np.searchsorted(ends, middles, side="right") - 1, 0, len(ends) - 2)
-    cells = np.zeros((len(middles), count))
-    for i in np.unique(place).tolist():
-        if not (at_ends[i].any() or at_ends[i + 1].any()):
-            continue
-        rows = slice(*np.searchsorted(place, [i, i + 1]).tolist())
-        share = np.clip((middles[rows] - ends[i]) / (ends[i + 1] - ends[i]), 0.0, 1.0)[:, None]
-        cells[rows] = at_ends[i] * (1.0 - share) + at_ends[i + 1] * share
-    return cells
-
-
-def _middles(time: Floats) -> Floats:
-    """Return the middles of the intervals of the rows; the first row has that which begins there."""
-    return np.concatenate([[0.5 * (time[0] + time[1])], 0.5 * (time[1:] + time[:-1])])
-
-
-def _completed(
-    result: RunRecord,
-    front: Front,
-    steps: list[FaceStep],
-    cells: Floats,
-    edges: tuple[Floats, Floats],
-) -> Floats:
-    """Scale the cells in place to the result's force, and add the force without nodes at its own place."""
-    force = np.zeros(len(cells))
-    moments = np.zeros((len(cells), 2))  # of the force across the line: along and height [N m]
-    for i, load in enumerate(element_loads(result)):
-        across = load.force @ front.across
-        # Forces along the line and up have a lever where the face is not above the foot.
-        moments[:, 0] += front.feet[i] * across - load.moment[:, 2] + front.lever * (load.force @ front.line)
-        moments[:, 1] += load.moment @ front.line + front.lever * load.force[:, 2]
-        force += across
-    nodes = cells.sum(axis=1)
-    rest = force - nodes
-    by_others = np.abs(rest) > _REST * np.abs(force).max(initial=0.0)
-    known = nodes > 0.0
-    scaled = known & ~by_others
-    cells *= np.divide(force, nodes, out=np.ones_like(force), where=scaled)[:, None]
-    alone = np.flatnonzero((by_others | ~known) & (force != 0.0))
-    if len(alone):
-        of_nodes = _moments_of(result.time, steps)
-        turned = (moments[alone] - of_nodes[alone]) / np.where(rest[alone] == 0.0, 1.0, rest[alone])[:, None]
-        all_y, all_z = (
-            np.concatenate([getattr(step, name) for step in steps]) for name in ("along", "height")
-        )
-        limits = [
-            (p.min(), p.max()) if len(p) else (e[0], e[-1])
-            for p, e in zip((all_y, all_z), edges, strict=True)
-        ]
-        along, height = (np.clip(turned[:, k], *limits[k]) for k in range(2))
-        height = np.minimum(height, np.nextafter(front.top, 0.0))
-        np.add.at(cells, (alone, cells_of(along, height, edges)), rest[alone])
-    return cells
-
-
-def _completed_posts(result: RunRecord, front: Front, cells: Floats, edges: tuple[Floats, Floats]) -> Floats:
-    """Scale the column of each post in place to the post's force; without nodes its moment has the height."""
-    rows, columns = len(edges[1]) - 1, len(edges[0]) - 1
-    for i, load in enumerate(element_loads(result)):
-        column = np.arange(rows) * columns + i
-        force = load.force @ front.across
-        nodes = cells[:, column].sum(axis=1)
-        known = nodes > 0.0
-        cells[:, column] *= np.divide(force, nodes, out=np.zeros_like(force), where=known)[:, None]
-        alone = np.flatnonzero(~known & (force != 0.0))
-        turning = load.moment[alone] @ front.line + front.lever * load.force[alone, 2]
-        height = np.clip(turning / force[alone], edges[1][0], np.nextafter(edges[1][-1], 0.0))
-        places = cells_of(np.full(len(alone), front.feet[i]), height, edges)
-        np.add.at(cells, (alone, places), force[alone])
-    return cells
-
-
-def _moments_of(time: Floats, steps: list[FaceStep]) -> Floats:
-    """Return the moments of the nodes' forces in the middles of the rows, shape (n, 2) [N m]."""
-    ends = np.array([step.time for step in steps])
-    at_ends = np.array([(step.force @ step.along, step.force @ step.height) for step in steps])
-    return np.column_stack([np.interp(_middles(time), ends, column) for column in at_ends.T])
 
 
 def _row(cells: Iterable[str]) -> str:

@@ -22,7 +22,8 @@ from . import result_file
 from . import table as result_table
 from .analysis import RunAnalysis
 from .capture import capture
-from .load_map import LoadMap, load_map
+from .computed_cells import load_map
+from .load_map import LoadMap
 from .report import report
 from .sensor import Sensor, place_sensor
 from .unit_result import UnitResult
@@ -124,6 +125,8 @@ class Result(RunAnalysis):
         ------
         ValueError
             If there is no such point or part; the message names those that there are.
+        UnitWarning
+            As a warning, if a place in plain numbers is more than 1 m outside the box about the part's skin.
         """
         return place_sensor(self, point, part)
 
@@ -134,7 +137,9 @@ class Result(RunAnalysis):
         lateral: npt.ArrayLike | None = None,
         height: npt.ArrayLike | None = None,
     ) -> LoadMap:
-        """Return the force on the cells of a grid over a fixed barrier; see :func:`birm3d.result.load_map`.
+        """Return the force on the cells of a grid over a fixed barrier.
+
+        How it is found says :func:`birm3d.result.computed_cells.load_map`.
 
         Parameters
         ----------

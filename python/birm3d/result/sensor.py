@@ -12,7 +12,8 @@ import numpy.typing as npt
 from ..base.arguments import checked
 from ..base.checks import index
 from ..signals.channel import Channel
-from ..units import Quantity, si
+from ..unit_check import warn_if_far_from_skin
+from ..units import Quantity, Stated, si
 from .unit_result import read_only
 
 if TYPE_CHECKING:
@@ -171,6 +172,7 @@ def place_sensor(result: RunRecord, point: str | Sequence[Quantity], part: str |
         if len(point) != 3:
             raise ValueError(f"point must be three numbers (m) or the name of a point, got {point}")
         place = [si("point", value, "length") for value in point]
+        _warn_if_far(units[which or 0], point, place)
         return Sensor(result, "({:g}, {:g}, {:g}) m".format(*place), np.array(place), which or 0)
     if which is None:
         having = [i for i, unit in enumerate(units) if point in unit.points]
@@ -187,6 +189,14 @@ def place_sensor(result: RunRecord, point: str | Sequence[Quantity], part: str |
             f"file; got {point!r} of {units[which].name!r}"
         )
     return Sensor(result, point, np.asarray(known[point], float), which)
+
+
+def _warn_if_far(unit: Vehicle, point: Sequence[Quantity], place: Sequence[float]) -> None:
+    """Warn of a place far outside the box about a unit's skin and its mass centre."""
+    low, high = unit.skin_bounds
+    box = np.minimum(low, 0.0) + unit.center_of_mass, np.maximum(high, 0.0) + unit.center_of_mass
+    stated = [isinstance(value, (str, Stated)) for value in point]
+    warn_if_far_from_skin(place, box[0].tolist(), box[1].tolist(), stated)
 
 
 def _unit_of(units: Sequence[Vehicle], part: str | int) -> int:

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from ..base.arguments import checked
 from .samples import Samples
 
-__all__ = ["Finding", "Findings", "check_channel"]
+__all__ = ["Finding", "Findings", "check_channel", "onset_of"]
 
 Floats = npt.NDArray[np.float64]
 Severity = Literal["error", "warning", "note"]
@@ -116,10 +116,10 @@ def check_channel(
     si = channel.to_si()
     found = [_sampling(si, channel.cfc if cfc is None else cfc)]
     if channel.quantity in ("acceleration", "force"):
-        onset = _onset(si)
+        onset = onset_of(si)
         found += [_time_zero(si, onset, onset_within), _bias(si, min(0.0, onset))]
     if channel.quantity in ("acceleration", "force", "speed"):
-        start = _onset(si) if channel.quantity != "speed" else 0.0
+        start = onset_of(si) if channel.quantity != "speed" else 0.0
         found.append(_sign_and_unit(si, start, channel.unit, impact_speed, mass))
     return Findings(found)
 
@@ -140,8 +140,8 @@ def _sampling(channel: Samples, cfc: float | None) -> Finding:
     return Finding("note", "sampling", f"rows every {interval:g} s, from {channel.time[0]:g} s")
 
 
-def _onset(channel: Samples) -> float:
-    """Instant at which the record rises [s]."""
+def onset_of(channel: Samples) -> float:
+    """Return the instant at which a record rises [s]."""
     time, values = channel.time, channel.values
     rows = max(1, round(_ONSET_WINDOW / float(np.median(np.diff(time)))))
     smooth = np.convolve(values, np.full(rows, 1.0 / rows), "same")
