@@ -13,6 +13,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 BENCH, VALIDATION = ROOT / "tests/bench/results", ROOT / "tests/validation/results"
 ALL_TESTS = ROOT / "tests/validation/README.md"
+RATINGS = ROOT / "tests/validation/ratings.md"
 MARK = re.compile(r"^<!-- build: (table|text) (\w+) -->$", re.MULTILINE)
 Row = dict[str, str]
 _log = logging.getLogger("mkdocs.hooks.tables")
@@ -151,6 +152,11 @@ def counts_by_kind() -> dict[tuple[str, str, str], Row]:
         kind = row["kind"] or kind
         found[kind, row["quantity"], row["role"]] = row
     return found
+
+
+def ratings() -> str:
+    """How many published tests are rated as they were."""
+    return RATINGS.read_text(encoding="utf-8").split("\n## Ratings\n\n")[1].split("\n\n")[0]
 
 
 # Rows of README.md: kind of test, the quantities that are counted together, and their role.
@@ -334,7 +340,7 @@ def _plain(text: str) -> str:
 MADE: dict[str, Callable[[], str]] = {
     made.__name__: made
     for made in (
-        accuracy_errors, accuracy_claims, mesh, rivals, determinism, by_kind, blind, finite_element,
+        accuracy_errors, accuracy_claims, mesh, rivals, determinism, by_kind, ratings, blind, finite_element,
         robustness, metrics, settings, barriers, tutorial_report, design_loads, parapet_loads, limits,
     )
 }  # fmt: skip

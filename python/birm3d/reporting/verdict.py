@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Iterator, Sequence
-from statistics import median
 
 from ..assessment import DesignLoad, OccupantRisk, Rating
 from ..assessment.criteria import Criterion
@@ -13,21 +12,19 @@ from ..assessment.rating_caution import model_cautions
 from ..assessment.vehicles import HEAVY_KG
 from ..result.element_loads import touched_elements
 from ..result.event import outcome_words
-from ..result.summary import shown_as
 from ..vehicle.title import kind_words
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
 from .evidence import beyond_tests
-from .given_tests import Compared, errors
 from .numbers import percent
 from .static_force import band_of_design, made_by
 from .study_case import ROADSIDE, Case, is_oblique
 from .study_verdict import study_answers, study_table
+from .tests_verdict import answers_of_tests
 from .uncertainty import computing_error
 
 __all__ = ["criteria_table", "risk_section", "verdict_section"]
 
-_ALL_ALIKE = 4  # vehicle, barrier, speed, angle
 _KNOWS = " knows: "  # in the error of a standard that does not know the vehicle
 _FIRST_UNIT = "Motion and angles are those of the leading unit; a rating has the greatest roll of any."
 _NO_BARRIER = "There is no barrier in this scene: nothing is rated."
@@ -122,21 +119,7 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
     yield "Would occupants be at risk?", _risk_line(case)
     yield "How well is it computed?", _computed_line(case)
     yield from beyond_tests(case)
-    found = errors(case.tests)
-    rights = [one.right for one in case.tests if one.right is not None]
-    told = []
-    if rights:
-        wrong = [one.test.name for one in case.tests if one.right is False]
-        names = f" (WRONG: {'; '.join(wrong)})" if wrong else ""
-        told.append(f"containment as in {sum(rights)} of {len(rights)} tests{names}")
-    if found:
-        values = "1 value that was" if len(found) == 1 else f"{len(found)} values that were"
-        told.append(f"median error {median(map(abs, found)):.0%} in {values} not fitted")
-        told += [f"{one.test.name}, {_quantity(one)}: {one.error:+.0%}" for one in _twins(case.tests)]
-    if told and not any({"vehicle", "barrier"} <= set(one.alike) for one in case.tests):
-        told.append("none of these tests has both this kind of vehicle and this kind of barrier")
-    if told:
-        yield "How well does the model do in given tests nearby?", "; ".join(told)
+    yield from answers_of_tests(case)
 
 
 def _other_outcomes(case: Case) -> str:
@@ -170,17 +153,6 @@ def _reason(case: Case, reason: str) -> str:
     """Return why a standard does not rate the run, without the argument that its error names."""
     text, _, vehicles = _without_value(reason).partition(_KNOWS)
     return f"it knows no {_kind(case)}, but {kind_words(vehicles)}" if vehicles else text
-
-
-def _twins(tests: Sequence[Compared]) -> list[Compared]:
-    """Return the values of tests that are like the scene in all that is compared, and were not fitted."""
-    return [
-        one for one in tests if len(one.alike) == _ALL_ALIKE and one.error is not None and not one.test.fitted
-    ]
-
-
-def _quantity(one: Compared) -> str:
-    return shown_as(one.test.quantity)[0]
 
 
 def _penetration(rating: Rating) -> str:
