@@ -113,8 +113,9 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         alone = "this run alone, " if case.study is not None and len(case.design_loads.scenes) == 1 else ""
         yield (
             "What does its foundation have to carry?",
-            f"{alone}{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
-            f"{row.height:.2f} m, {made_by(case.design_loads)}{band_of_design(row)}",
+            f"{alone}{row.name}: {'design with an ' if row.band else ''}equivalent static force "
+            f"{row.design['equivalent_static_force'] / 1e3:,.0f} kN at {row.design['height']:.2f} m, "
+            f"{made_by(case.design_loads)}{band_of_design(row)}",
         )
     yield "Would occupants be at risk?", _risk_line(case)
     yield "How well is it computed?", _computed_line(case)
@@ -179,10 +180,15 @@ def _chances(case: Case, standard: str) -> str:
 
 
 def _load_band(case: Case) -> str:
-    name = "peak_element_force_50ms"
-    if isinstance(case.bands, str) or name not in case.bands.prediction.low:
+    force, moment = "peak_element_force_50ms", "peak_overturning_moment_50ms"
+    if isinstance(case.bands, str) or force not in case.bands.prediction.low:
         return ""
-    return f"; 80 % of the class: {band_of(case.bands, name, 1e3, ',.0f')} kN on the most loaded element"
+    own, high = case.result.metrics, case.bands.prediction.high
+    most = [f"{max(own[name], high[name]) / 1e3:,.0f}" for name in (force, moment)]
+    return (
+        f"; 80 % of the class: {band_of(case.bands, force, 1e3, ',.0f')} kN on the most loaded element; "
+        f"design with {most[0]} kN and {most[1]} kN m"
+    )
 
 
 def _risk_line(case: Case) -> str:
