@@ -198,6 +198,19 @@ def test_occupant_risk_of_a_study_has_bands() -> None:
     assert "<td" in risk._repr_html_()
 
 
+def test_one_run_says_that_it_has_no_band() -> None:
+    """Report and occupant risk of a run, as its rating does; measured channels are no run of a vehicle."""
+    run = PARAPET.run()
+    assert "  no band: these are numbers of one vehicle; birm3d.predict(sim) has" in run.report()
+    risk = birm3d.occupant_risk(run)
+    for text in (risk.summary(), risk._repr_html_()):
+        assert "No band: these are values of one vehicle. occupant_risk(birm3d.predict(simulation))" in text
+    time = np.arange(0.0, 0.2, 1e-4)
+    pulse = Channel("a", time, np.where(time < 0.1, -20.0 * np.sin(np.pi * time / 0.1), 0.0), "g")
+    assert "band" not in birm3d.occupant_risk(x=pulse, y=0.0).summary()
+    assert "No band" not in birm3d.occupant_risk(birm3d.predict(PARAPET, 8)).summary()
+
+
 def test_a_study_without_contact_has_no_risk() -> None:
     aside = birm3d.sweep(
         Simulation(CRASH.scene.vehicle, Barrier.bollards(count=2, spacing=6.0), 14.0), impact_speed=[5.0, 6.0]
