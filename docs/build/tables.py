@@ -161,16 +161,21 @@ def ratings() -> str:
 
 # Rows of README.md: kind of test, the quantities that are counted together, and their role.
 TRUST = (
-    ("Full-width rigid wall, head-on", ("travel",), "predicted"),
-    ("Full-width rigid wall, head-on", ("static crush",), "predicted"),
+    ("Full-width rigid wall, head-on", ("travel", "static crush"), "predicted"),
     ("Rigid pole into the side", ("static crush",), "predicted"),
     (
         "Finite-element vehicles N and S: walls, oblique walls, poles",
         ("travel", "peak force CFC60", "yaw"),
         "left out",
     ),
+    ("Finite-element truck: walls and bollards", ("overturning moment", "greatest roll"), "predicted"),
+    ("Oblique impact on walls and concrete barriers", ("exit angle", "greatest roll"), "predicted"),
     ("Lateral design loads of rails", ("force over 50 ms",), "predicted"),
     ("Trucks at bollards and walls, head-on", ("dynamic penetration",), "predicted"),
+)
+NO_DATA = (
+    "exit speed, tilt of posts, overturning moment at a foot other than by finite elements",
+    "no test data: no measured value was found",
 )
 
 
@@ -188,7 +193,7 @@ def trust() -> str:
         body.append(
             (f"{kind}: {', '.join(quantities)} ({role})", f"{met} of {number} within the marks; {errors}")
         )
-    return table(("checked against", "result"), [*body, _greatest_error(), _same_bits()])
+    return table(("checked against", "result"), [*body, NO_DATA, _greatest_error(), _same_bits()])
 
 
 def _greatest_error() -> tuple[str, str]:

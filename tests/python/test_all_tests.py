@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from birm3d.assessment.design_caution import _LOW
 
 TESTS = Path(__file__).resolve().parents[1]
 FOLDER = TESTS / "validation"
@@ -26,6 +27,7 @@ RECOMPUTED = [
     ("finite_element_truck", "wall00_50 fitted_truck"),
     ("small_overlap", "passenger_car"),
     ("redirection", "MASH 3-11"),
+    ("redirection", "SWOV TB51"),
     ("lateral_load", "AASHTO TL-3"),
     ("security", "DSC635 at rest"),
 ]
@@ -48,7 +50,7 @@ def test_page_is_what_the_tables_say() -> None:
 
 
 def test_readme_has_rows_of_the_page() -> None:
-    """README.md of the package: at most eight rows, made of this page and of saved results."""
+    """README.md of the package: at most ten rows, made of this page and of saved results."""
     spec = importlib.util.spec_from_file_location("tables", TESTS.parent / "docs/build/tables.py")
     assert spec is not None
     assert spec.loader is not None
@@ -58,8 +60,17 @@ def test_readme_has_rows_of_the_page() -> None:
     section = readme.split("\n## How far the numbers can be trusted\n")[1].split("\n## ")[0]
     rows = [line for line in section.splitlines() if line.startswith("|")]
     assert "\n".join(rows) == tables.trust(), "the table of README.md must be that of docs/build/tables.py"
-    assert len(rows) <= 2 + 8
+    assert len(rows) <= 2 + 10
     names = {all_tests.kind(name).TITLE: name for name in all_tests.KINDS}
+    # What is told of exits, rolls, posts and moments: its error, or that there is no test of it.
+    for quantity in ("exit angle", "greatest roll", "overturning moment"):
+        assert any(quantity in row and "within the marks; median error" in row for row in rows)
+    (none,) = [row for row in rows if "no test data" in row]
+    for quantity in ("exit speed", "tilt of posts", "overturning moment"):
+        assert quantity in none
+    measured = {row.quantity for name in all_tests.KINDS for row in read(name) if row.role != "check"}
+    assert {"exit angle", "greatest roll", "overturning moment"} <= measured
+    assert not {"exit speed", "tilt of posts", "post tilt"} & measured
     for kind, quantities, role in tables.TRUST:
         for quantity in quantities:
             name = names[kind]
@@ -117,3 +128,13 @@ def test_readme_counts_ratings_as_their_page_does() -> None:
     )
     assert found is not None
     assert said.groups() == (found[2], found[1], *found.groups()[2:])
+
+
+def test_moments_beside_finite_elements_are_told_where_loads_are() -> None:
+    """The caution of heavy vehicles and README.md have the least and the greatest error of the preset."""
+    rows = [row for row in read("finite_element_truck") if row.quantity == "overturning moment"]
+    errors = [round(-100.0 * row.error) for row in rows if row.vehicle == "cargo_truck"]
+    assert len(errors) == 4
+    told = f"{min(errors)} to {max(errors)} % less than in four finite-element runs"
+    assert told in _LOW
+    assert told in " ".join((TESTS.parent / "README.md").read_text(encoding="utf-8").split())
