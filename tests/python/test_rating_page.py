@@ -12,6 +12,7 @@ from types import ModuleType
 import pytest
 from birm3d.reporting.blocks import Text
 from birm3d.reporting.given_tests import nearest
+from birm3d.reporting.published_class import judged_class
 
 FOLDER = Path(__file__).resolve().parents[1] / "validation"
 
@@ -25,14 +26,58 @@ def module() -> ModuleType:
         sys.path.remove(str(FOLDER))
 
 
+def _cells(page: str, name: str) -> list[str]:
+    """Return the row of a test on the page."""
+    (row,) = [line for line in page.splitlines() if line.startswith(f"| {name} |")]
+    return [cell.strip() for cell in row.split("|")[1:-1]]
+
+
 def test_the_page_has_every_case(module: ModuleType) -> None:
     text = (FOLDER / "ratings.md").read_text(encoding="utf-8")
     for case in module.CASES:
-        (row,) = [line for line in text.splitlines() if line.startswith(f"| {case.name} |")]
-        assert case.published in row
-        assert (" right |" in row) != ("**wrong**" in row)
+        row = _cells(text, case.name)
+        assert row[4] == case.published
+        assert row[5] in ("right", "**wrong**")
+        assert (row[6] == "not published") == (not case.published_class)
         assert f"- {case.name}: {case.source}" in text
     assert f"of {len(module.CASES)} tests" in text
+
+
+def test_published_classes_are_those_of_the_published_penetration(module: ModuleType) -> None:
+    """ASTM F2656: P1 up to 1 m, P2 up to 7 m, P3 up to 30 m, of the dynamic penetration."""
+    told = [case for case in module.CASES if case.penetration is not None]
+    assert len(told) >= 5
+    for case in told:
+        assert case.standard == "ASTM F2656"
+        assert case.penetration_kind in ("dynamic", "limit", "")
+        limits = {"P1": 1.0, "P2": 7.0, "P3": 30.0}
+        assert case.published_class == next(name for name, most in limits.items() if case.penetration <= most)
+    (shallow,) = [case for case in told if case.name.startswith("DSC635")]
+    assert (shallow.penetration, shallow.penetration_kind, shallow.published_class) == (1.87, "dynamic", "P2")
+
+
+def test_a_class_is_right_if_each_published_part_is_computed(module: ModuleType) -> None:
+    (shallow,) = [case for case in module.CASES if case.name.startswith("DSC635")]
+    rating = module.rated(shallow)
+    assert rating.contained is shallow.measured  # containment alone would call the row right
+    assert rating.penetration < 0.0
+    assert judged_class(shallow.published_class, rating) == "wrong"
+    assert judged_class("P1", rating) == "right"
+    assert judged_class("", rating) == "not published"
+    (car,) = [case for case in module.CASES if case.name.startswith("TB11")]
+    rating = module.rated(car)
+    assert judged_class("pass; severity B", rating) == "right"
+    assert judged_class("pass; severity A", rating) == "wrong"
+    assert judged_class("fail", rating) == "wrong"
+
+
+def test_each_test_that_is_left_out_has_its_reason(module: ModuleType) -> None:
+    text = (FOLDER / "ratings.md").read_text(encoding="utf-8")
+    assert len(dict(module.LEFT_OUT)) == len(module.LEFT_OUT)
+    for name, reason in module.LEFT_OUT:
+        assert _cells(text, name) == [name, reason]
+        assert reason
+        assert name not in {case.name for case in module.CASES}
 
 
 @pytest.mark.parametrize(
@@ -57,8 +102,10 @@ def test_every_case_runs_and_the_page_is_fresh(module: ModuleType) -> None:
     right = 0
     for case in module.CASES:
         rating = module.rated(case)
-        (row,) = [line for line in text.splitlines() if line.startswith(f"| {case.name} |")]
-        assert f"| {'contained' if rating.contained else 'not contained'} |" in row
+        row = _cells(text, case.name)
+        assert row[2] == ("contained" if rating.contained else "not contained")
+        assert row[3] == f"{rating.penetration:.2f}"
+        assert row[6].strip("*") == judged_class(case.published_class, rating)
         right += rating.contained == case.measured
     assert f"as published in {right} of {len(module.CASES)} tests" in text
 

@@ -52,7 +52,7 @@ def computed(job: tuple[str, str]) -> list[Row]:
 
 
 def extra(task: str) -> tuple[str, ...]:
-    """The row of an oblique impact in the table of figures that nothing is measured of."""
+    """The row of an oblique impact in the table of computed figures."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         cells: tuple[str, ...] = kind("redirection").computed(task)

@@ -34,6 +34,9 @@ dash in place of a unit stands for ratios, counts, and yes (1) or no (0).
 - predicted: no fit has seen the row.
 - check: nothing was measured, or the mark is wide on one side by its nature. The row is in no count.
 
+No test data: of exit speed and of the tilt of posts that yield no measured value was found. Of the
+overturning moment at a foot there are finite-element runs only.
+
 Figures whose source is not at hand are printed apart, at the end of a kind, and are in no count.
 Details of the fits: [vehicles N and S](finite_element.md), [finite-element truck](truck.md).
 """
@@ -144,7 +147,7 @@ def _table(rows: Sequence[Row]) -> list[str]:
 
 
 def _computed() -> list[str]:
-    """Figures of oblique impacts that nothing was measured of."""
+    """Figures of oblique impacts, of which few were measured."""
     head = (
         "test",
         "vehicle",
@@ -159,4 +162,10 @@ def _computed() -> list[str]:
     )
     path = Path(RESULTS) / "redirection_computed.txt"
     rows = [line.split("; ") for line in path.read_text(encoding="utf-8").splitlines()]
-    return ["Computed, without a measured figure:", "", _line(head), _rule(len(head)), *map(_line, rows)]
+    return [
+        "Computed; the few that were measured are above:",
+        "",
+        _line(head),
+        _rule(len(head)),
+        *map(_line, rows),
+    ]

@@ -14,7 +14,7 @@ RESULTS = FOLDER / "results"
 # Quantities of which a relative error says little: they can be nought.
 ABSOLUTE = frozenset({"deg", "-"})
 # Units that tables have in place of SI, and their factors.
-TOLD = {"N": (1e-3, "kN"), "N s": (1e-3, "kN s")}
+TOLD = {"N": (1e-3, "kN"), "N s": (1e-3, "kN s"), "N m": (1e-3, "kN m")}
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from pathlib import Path
 import birm3d
 from birm3d import Rating, units
 from birm3d.reporting.given_tests import GivenTest, given_tests
+from birm3d.reporting.published_class import class_of, judged_class
 
 PAGE = Path(__file__).with_name("ratings.md")
 
@@ -30,9 +31,67 @@ says so.
 
 The scenes of MASH 4-11, of the two tractor-trailers and of the broadside pickup are those of the
 [page of all tests](README.md). Greatest roll is that of both units here, and that of the tractor there. MASH
-4-12 is 2214NJ-2 there. TB11 and TB51 have nominal speeds and angles on both pages. Here the profile is a New
-Jersey of 0.9 m, there one of 0.81 m.
+4-12 is 2214NJ-2 there. TB11 and TB51 are SWOV TB11 and SWOV TB51 there, with the preset of the class: a
+small car, where here it is a sedan's shape at 900 kg.
 """
+
+
+_HOW = """Penetration is that of the standard's point past its datum; of roadside tests that of any part of
+the vehicle past the traffic face. Class or penetration: right if the class of the computed penetration is
+that of the published one. ASTM F2656 classes the dynamic penetration: P1 up to 1 m, P2 up to 7 m. Of
+roadside tests the verdict is judged, and the severity by ASI where it was published."""
+
+
+_RISK = """The sedan's channels are those of the compartment; the model's vehicle is one body, so that its
+pulse is that of the momentum centre. The pole of the second test stands where the mass centre goes: there
+the preset's side gives way until the pole is at the rigid body, which it should not."""
+
+
+LEFT_OUT = (
+    ("Delta DSC720FP, fixed bollard", "sizes are published, and no test"),
+    (
+        "Delta DSC7000, beam barricade",
+        "a beam, no bollard: neither its sizes nor those of its supports are published",
+    ),
+    ("Delta TT203, penetrated by 3.7 m at 51 km/h", "no size of what was hit is published"),
+    ("Delta TT210, no penetration at 64 km/h", "no size of what was hit is published"),
+    (
+        "anchored concrete median, 1.8-t car at 80 km/h (MIL-HDBK-1013/14), penetrated by 6.0 m",
+        "the angle is not published; a section broke and overturned, and barriers of the model do not break",
+    ),
+    (
+        "PPG fixed M50 bollards, M50-P1, V/7500[N3]/80/90:0.4, V/7200[N3C]/80/90:0.8",
+        "diameter and height of the bollards are not published",
+    ),
+    (
+        "TTI, 1975 sedan at 24 deg into a wall",
+        "neither a rating nor the outcome is published where it was read",
+    ),
+    (
+        "TTI, heavy vehicles at instrumented walls (Beason and Hirsch 1989)",
+        "only the list of vehicles was read",
+    ),
+    ("TTI, 36-t tractor-trailers at a pier (2011)", "force histories exist and were not read"),
+    ("TTI 420020-9b, 10-t truck at a single slope", "conditions and outcome as commonly reported only"),
+    (
+        "Caltrans Type 60, Kia Rio (140MASH3C16-04)",
+        "conditions are published, rating and outcome were not read",
+    ),
+    (
+        "FHWA FOIL 03008, tractor without a trailer",
+        "conditions are published, rating and outcome were not read",
+    ),
+    (
+        "MwRSF, Honda Civic at a New Jersey rail with a step of 4.5 in",
+        "the summary says that such a car is likely to roll, not what this one did",
+    ),
+    ("MwRSF, Manitoba tall wall, MASH 5-12", "speed and angle were not read"),
+    (
+        "SWOV R-96-26, TB11 and TB51 on an anchored steel STEP barrier",
+        "a steel barrier, how far it moved was not read; exit 9 and 2 deg, roll of the bus about 25 deg",
+    ),
+)
+"""Published tests that have no row, each with its reason."""
 
 
 CASES = tuple(test for test in given_tests() if test.quantity == "containment")
@@ -98,14 +157,15 @@ def rated(case: GivenTest) -> Rating:
     return birm3d.rate(case.simulation().run(), case.standard, vehicle_class=case.vehicle_class or None)
 
 
-def _row(case: GivenTest) -> list[str]:
-    rating = rated(case)
+def _row(case: GivenTest, rating: Rating) -> list[str]:
     right = "right" if rating.contained == case.measured else "**wrong**"
+    judged = judged_class(case.published_class, rating).replace("wrong", "**wrong**")
     row = {one.name: one for one in rating.criteria}
     own = rating.designation
     own += "".join(f"; {name} {row[name].shown}" for name in ("ASI", "greatest roll") if name in row)
     contained = "contained" if rating.contained else "not contained"
-    return [case.name, own, contained, f"{rating.penetration:.2f}", case.published, right, case.note]
+    penetration = f"{rating.penetration:.2f}"
+    return [case.name, own, contained, penetration, case.published, right, judged, case.note]
 
 
 def _table(head: list[str], rows: list[list[str]]) -> str:
@@ -115,39 +175,41 @@ def _table(head: list[str], rows: list[list[str]]) -> str:
 
 def page() -> str:
     """Return the page."""
-    rows = [_row(case) for case in CASES]
-    right = sum(row[5] == "right" for row in rows)
-    computed = sum(row[2] == "contained" for row in rows)
-    published = sum(bool(case.measured) for case in CASES)
+    found = [rated(case) for case in CASES]
+    rows = [_row(case, rating) for case, rating in zip(CASES, found, strict=True)]
     ratings = _table(
-        ["test", "computed rating", "computed", "penetration [m]", "published", "containment", "note"], rows
+        [
+            *("test", "computed rating", "computed", "penetration [m]", "published"),
+            *("containment", "class or penetration", "note"),
+        ],
+        rows,
     )
     risk = _table(["test", "value", "computed", "published", "error"], _risk_rows())
+    left_out = _table(["test", "why it is left out"], [list(one) for one in LEFT_OUT])
     sources = "\n".join(f"- {case.name}: {case.source}" for case in CASES)
+    others = "; ".join(case.name for case in DOSSIERS if not case.standard)
     return f"""{_HEAD}
 ## Ratings
 
-Containment is as published in {right} of {len(rows)} tests. {computed} are computed as contained,
-and {published} were. Penetration is that of the standard's point past its datum; of
-roadside tests that of any part of the vehicle past the traffic face.
+{_counts(rows, found)}
+
+{_HOW}
 
 {ratings}
 ## Occupant risk
 
-The sedan's channels are those of the compartment; the model's vehicle is one body, so that its pulse is that
-of the momentum centre. The pole of the second test stands where the mass centre goes: there the preset's
-side gives way until the pole is at the rigid body, which it should not.
+{_RISK}
 
 {risk}
 ## Left out
 
-JERSEY-4000 (a section broke; angle not stated), TT203, TT210, DSC7000 (not bollards; sizes not published),
-TTI's 1975 sedan at 24 deg, T60-KIA and FOIL 03008 (neither rating nor outcome published).
+Published tests that were looked at and are not in the table.
 
+{left_out}
 ## Dossiers
 
 `python tests/validation/rating_page.py --dossiers FOLDER` writes those of all these tests, and of
-{"; ".join(case.name for case in DOSSIERS if not case.standard)}.
+{others}.
 Their verdicts are those of this page.
 
 ## Sources
@@ -156,6 +218,25 @@ Their verdicts are those of this page.
 - NHTSA 10146: NHTSA vehicle crash test database, compartment channels reduced at 10 kHz
 - FOIL C2500: FHWA FOIL broadside rigid-pole test, results table (ntlrepository, lib/5000/5400/5481)
 """
+
+
+def _counts(rows: list[list[str]], found: list[Rating]) -> str:
+    """Return how many verdicts are as published; README.md and docs/pages/validation.md repeat it."""
+    right = sum(row[5] == "right" for row in rows)
+    computed = sum(row[2] == "contained" for row in rows)
+    published = sum(bool(case.measured) for case in CASES)
+    judged = [row[6] for row in rows if row[6] != "not published"]
+    posts = [
+        (class_of(rating), case.published_class)
+        for case, rating in zip(CASES, found, strict=True)
+        if case.recipe[3] == "bollards" and case.penetration is not None
+    ]
+    best, were = sum(own == "P1" for own, _ in posts), sum(given == "P1" for _, given in posts)
+    n, met = len(judged), judged.count("right")
+    return f"""Containment is as published in {right} of {len(rows)} tests. {computed} are computed as
+contained, and {published} were. A class or a penetration was published of {n} tests, and is as published in
+{met}. Of {len(posts)} tests at posts with a published penetration, {best} are computed in the best class, P1,
+and {were} were in it."""
 
 
 def main() -> None:

@@ -38,6 +38,8 @@ INERTIA = {"Ixx": 3908.0, "Iyy": 22400.0, "Izz": 23235.0, "Ixz": 712.0}  # kg m2
 class Run:
     """A finite-element run: scalars, and curves since the first touch (s, N, m, deg), shape (n,).
 
+    ``moment``: greatest 50-ms mean of the overturning moment about the foot of a post or the wall [N m];
+    ``None`` where its height is not to be believed. ``roll``: greatest magnitude.
     Impulses are on the posts from low to high y, or on the wall: along the path and to its left, (p, 2).
     Of parts that one rigid body does not have, see truck_runs.csv: momentum that the engine lacks and that
     the bed has beyond the frame's [N s], slip of the bed, way of the front axle [m]; impulses up on the
@@ -52,8 +54,10 @@ class Run:
     travel: float
     force_50ms: float
     peak_force: float
+    moment: float | None
     pitch: float
     yaw: float
+    roll: float
     time_of_zero_velocity: float | None
     speed_at_end: float
     impulse: Floats
@@ -74,6 +78,7 @@ class Run:
 class Figures:
     """What is compared: travel of the whole, force over 50 ms, greatest pitch and yaw, impulses; SI, deg.
 
+    ``moment``: greatest 50-ms mean of the overturning moment about the foot of a post or the wall [N m].
     ``up``: impulse of the barrier on the vehicle, upwards [N s]. ``friction``: energy lost by it at the
     barrier, of the kinetic energy at first. ``core_contact``: whether the rigid core met the barrier.
     ``slip``: greatest of a bed that slides [m].
@@ -81,8 +86,10 @@ class Figures:
 
     travel: float
     force_50ms: float
+    moment: float
     pitch: float
     yaw: float
+    roll: float
     impulse: Floats
     up: float
     friction: float
@@ -112,8 +119,10 @@ def runs() -> Mapping[str, Run]:
             travel=float(row["travel_m"]),
             force_50ms=float(row["force_50ms_N"]),
             peak_force=float(row["peak_force_N"]),
+            moment=float(row["moment_50ms_N_m"]) if row["moment_50ms_N_m"] else None,
             pitch=float(row["pitch_deg"]),
             yaw=float(row["yaw_deg"]),
+            roll=float(row["roll_deg"]),
             time_of_zero_velocity=float(stop) if stop else None,
             speed_at_end=float(row["normal_speed_at_end_m_s"]),
             impulse=np.array([_numbers(row["impulse_forward_N_s"]), _numbers(row["impulse_left_N_s"])]).T,
@@ -195,8 +204,10 @@ def figures(result: birm3d.Result) -> Figures:
     return Figures(
         travel=float(travel.max()),
         force_50ms=float(moving_average(force[:, None], 0.05, interval).max()),
+        moment=float(result.metrics["peak_overturning_moment_50ms"]),
         pitch=float(result.pitch.max()),
         yaw=float(result.yaw[np.argmax(np.abs(result.yaw))]),
+        roll=float(np.abs(result.roll).max()),
         impulse=np.array(impulse),
         up=float(result.barrier_force[1:, 2].sum()) * interval,
         friction=float(result.energy["barrier_friction"][-1] / result.energy["kinetic"][0]),

@@ -15,7 +15,8 @@ from ..simulation.parameters import varied_scene
 from ..simulation.simulation import Simulation
 from ..study.class_draws import check_draws, drawn_parameters
 from ..study.predict import SHARE, quantiles
-from .element_design import BANDED, ElementDesign
+from .design_cells import load_text
+from .element_design import BANDED, DESIGNED, ElementDesign
 
 __all__ = ["Bands", "ClassDraws", "Seen", "bands_of", "class_draws", "governing_scenes", "with_bands"]
 
@@ -24,7 +25,6 @@ Seen = tuple[list[ElementDesign], bool]
 
 _DRAWS = 16
 _OF_FORCE = ("height", "direction")  # where and in which direction the greatest 50-ms force acts
-_ROUNDING = 1e-6  # a value counts as outside of a band if it is by more than this (SI, deg)
 
 _BLOWS = (
     "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes: the upper "
@@ -35,15 +35,17 @@ _BLOWS_OF_PEAKS = (
     "ends of the bands of peak force rest on that blow and are too high."
 )
 _BELOW = (
-    "On {elements}, {values} below the band, which is unsafe: most vehicles of the class ask for more. "
-    "Design with the upper end of the band."
+    "On {elements}, {values} of this vehicle {verb} below the band, which is unsafe: most vehicles of the "
+    "class ask for more. The design value is the upper end of the band."
 )
-_ABOVE = "On {elements}, {values} above the band: most vehicles of the class ask for less."
+_ABOVE = (
+    "On {elements}, {values} of this vehicle {verb} above the band: most vehicles of the class ask for less. "
+    "The design value is this vehicle's own."
+)
 _NAMES = {
     **{name: name.replace("_", " ") for name in BANDED},
     "force_50ms": "50-ms force",
 }
-_SIDELESS = ("direction", "dynamic_load_factor")  # neither a greater nor a lesser one asks for more
 _LEAST_SHARE = 0.01  # elements that carry less than this share of the greatest load are not mentioned
 _FAILED = "{n} of {all} vehicles of the class could not be run and are not in the bands."
 
@@ -182,18 +184,22 @@ def _of_outside(rows: Sequence[ElementDesign]) -> Iterator[str]:
                 elements.setdefault(names, []).append(row.name)
         for names, found in elements.items():
             verb = "lies" if len(names) == 1 else "lie"
-            yield text.format(elements=", ".join(found), values=f"{_listed(names)} {verb}")
+            yield text.format(elements=", ".join(found), values=_listed(names), verb=verb)
 
 
 def _outside(row: ElementDesign, sign: float) -> Iterator[str]:
-    """Yield the values of a row that lie below their bands (sign 1), or above them (sign -1)."""
-    for name, (low, high) in row.band.items():
-        if name in _SIDELESS:
+    """Yield the values of a row that lie below their bands (sign 1), or above them (sign -1).
+
+    A value that is printed as the end of its band is not outside of it.
+    """
+    for name in DESIGNED:
+        if name not in row.band:
             continue
-        value, ends = getattr(row, name), (low, high)
+        value, ends = getattr(row, name), row.band[name]
         if name == "impulse" and value < 0.0:  # away from the barrier: its size counts
-            value, ends = -value, (-high, -low)
-        if (ends[0] - value if sign > 0.0 else value - ends[1]) > _ROUNDING:
+            value, ends = -value, (-ends[1], -ends[0])
+        end = ends[0] if sign > 0.0 else ends[1]
+        if sign * (end - value) > 0.0 and load_text(name, value) != load_text(name, end):
             yield _NAMES[name]
 
 

@@ -38,6 +38,7 @@ __all__ = [
 Floats = npt.NDArray[np.float64]
 
 _NO_BAND = " No band: "
+_ONE_VEHICLE = " Loads are those of this vehicle: others of its class may ask for more."
 
 
 class DesignLoadInterrupted(KeyboardInterrupt):
@@ -161,7 +162,7 @@ def design_load(
         raise ValueError(f"cases must have a scene that can be run, got none: {reason}")
     load = seen.table()
     if drawn.power is None:
-        load.caution += f"{_NO_BAND}{drawn.reason}."
+        load.caution += f"{_NO_BAND}{drawn.reason}.{'' if refusal else _ONE_VEHICLE}"
         return load
     scenes = {run: plan.scenes[run] for run in governing_scenes(load)}
     rows = partial(_rows_and_blow, normal=load.normal, system=plan.system)
@@ -259,7 +260,7 @@ def with_vehicles(load: DesignLoad, seen: Iterable[tuple[int, Seen | None]], veh
     seen, vehicles
         See :func:`birm3d.assessment.class_bands.bands_of`.
     """
-    load.caution = load.caution.partition(_NO_BAND)[0]  # that there is no band was the last sentence
+    load.caution = load.caution.partition(_NO_BAND)[0]  # that there is no band is said last
     return _with(load, bands_of(load.rows, seen, vehicles), vehicles)
 
 

@@ -86,9 +86,10 @@ def _of_other_periods(load: DesignLoad) -> Iterator[str]:
     found = greatest_of_periods(load)
     if found is not None:
         force, period = found
+        times = force / load.governing.equivalent_static_force
         yield (
             f"With natural periods from {_PERIODS[0]:g} to {_PERIODS[1]:g} s, {load.governing.name} carries "
-            f"up to {force / 1e3:,.0f} kN (at {period:.2g} s)."
+            f"up to {times:.2f} times this equivalent static force (at {period:.2g} s)."
         )
         if force > _MOST_OF_ONE_PULSE * load.governing.peak_force:
             yield _ADDED

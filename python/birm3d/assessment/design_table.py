@@ -17,9 +17,11 @@ from ..base.checks import array, is_whole, shown
 from ..base.frozen_mapping import FrozenMapping
 from ..io.atomic_write import whole_file
 from ..scene.scene import Scene
-from .criteria import table_html, table_text, without_sign_of_zero
+from .criteria import table_html, table_text
+from .design_cells import is_loaded, load_cell, side_cell
 from .element_design import (
     BANDED,
+    DESIGNED,
     ENVELOPED,
     ElementDesign,
     System,
@@ -36,7 +38,12 @@ __all__ = ["DesignLoad", "LoadScene"]
 
 Floats = npt.NDArray[np.float64]
 
-_SHOWN = 0.005  # kN, kN s, kN m: less is shown as 0
+_DESIGN = (
+    "The first number of each load and height is the design value: the upper end of the 80 % band over "
+    "{draws} vehicles of the class in the governing scenes, or this vehicle's own value if that is greater. "
+    "One vehicle in ten asks for more. No partial factor is in it. In square brackets: this vehicle; the "
+    "band. Direction and DLF are those of this vehicle. "
+)
 _NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "direction", "moment", "equivalent_static_force")
 
 
@@ -75,7 +82,8 @@ class DesignLoad:
 
     A sequence of :class:`birm3d.assessment.ElementDesign`, one for each element in the order of
     ``barrier.element_names``; ``loads["bollard 3"]`` finds one by its name. Its own properties of the same
-    names are arrays of all elements, shape (n,).
+    names are arrays of all elements, shape (n,). These values are those of the vehicle of the scene; what to
+    design with is ``design``, and what the printed table has first.
 
     Attributes
     ----------
@@ -192,9 +200,14 @@ class DesignLoad:
         return self._column("equivalent_static_force")
 
     @property
+    def design(self) -> Mapping[str, Floats]:
+        """Design values of all elements by name, shape (n,), SI; see ElementDesign."""
+        return {name: np.array([row.design[name] for row in self.rows]) for name in DESIGNED}
+
+    @property
     def governing(self) -> ElementDesign:
-        """The element with the greatest equivalent static force."""
-        return max(self.rows, key=lambda row: row.equivalent_static_force)
+        """The element with the greatest design value of the equivalent static force."""
+        return max(self.rows, key=lambda row: row.design["equivalent_static_force"])
 
     @property
     def title(self) -> str:
@@ -209,30 +222,30 @@ class DesignLoad:
         """How the columns are made, in a few sentences."""
         kind = "elastic" if self.ductility == 1.0 else f"elastic-plastic, ductility {self.ductility:g}"
         damped = f", damping {self.damping:g}" if self.damping > 0.0 else ""
-        band = (
-            f" In square brackets: 80 % band over {self.draws} vehicles of the class in the governing scenes."
-            if self.draws
-            else ""
-        )
         return (
-            f"Forces are horizontal, of walls across their line. Peak force: {self.peak_filter}. Force and "
-            "moment: greatest 50-ms means; height is that of the 50-ms force above the element's foot, where "
-            f"the moment is taken; direction that from the barrier's normal. {_of_moments(self.rows)}"
-            "Equivalent static force, at this "
-            f"height and in this direction: system with one degree of freedom, {kind}, natural period "
-            f"{self.natural_period:g} s{damped}, unfiltered load.{_of_yielding(self.rows)}{band}"
+            f"{self._of_design()}Forces are horizontal, of walls across their line. Peak force: "
+            f"{self.peak_filter}. Force and moment: greatest 50-ms means; height is that of the 50-ms force "
+            "above the element's foot, where the moment is taken; direction that from the barrier's normal. "
+            f"{_of_moments(self.rows)}Equivalent static force, at this height and in this direction: system "
+            f"with one degree of freedom, {kind}, natural period {self.natural_period:g} s{damped}, "
+            f"unfiltered load.{_of_yielding(self.rows)}"
         )
 
+    def _of_design(self) -> str:
+        """Return what the first number of a cell is, where there are bands."""
+        return _DESIGN.format(draws=self.draws) if self.draws else ""
+
     def _head(self) -> tuple[str, ...]:
+        design = "design " if self.draws else ""
         return (
             "element",
-            "impulse [kN s]",
-            f"peak force, {self.peak_filter} [kN]",
-            "50-ms force [kN]",
-            "height [m]",
+            f"{design}impulse [kN s]",
+            f"{design}peak force, {self.peak_filter} [kN]",
+            f"{design}50-ms force [kN]",
+            f"{design}height [m]",
             "direction [deg]",
-            "moment [kN m]",
-            "equivalent static force [kN]",
+            f"{design}moment [kN m]",
+            f"{design}equivalent static force [kN]",
             "DLF",
         )
 
@@ -243,22 +256,20 @@ class DesignLoad:
                 self._cell(row, "impulse"),
                 self._cell(row, "peak_force"),
                 self._cell(row, "force_50ms"),
-                f"{row.height:.2f}{_band(row, 'height', 1.0)}" if row.height > 0.0 else "–",
-                f"{round(row.direction)}{_band(row, 'direction', 1.0)}",
+                load_cell(row, "height"),
+                side_cell(row, "direction"),
                 self._cell(row, "moment"),
                 self._cell(row, "equivalent_static_force"),
-                f"{row.dynamic_load_factor:.2f}{_band(row, 'dynamic_load_factor', 1.0)}",
+                side_cell(row, "dynamic_load_factor"),
             )
-            if row.force_50ms >= 1e3 * _SHOWN
+            if is_loaded(row)
             else (row.name, "0", "0", "0", "", "", "0", "0", "")
             for row in self.rows
         ]
 
     def _cell(self, row: ElementDesign, name: str) -> str:
-        value = getattr(row, name) / 1e3
-        if abs(value) < _SHOWN:
-            return "0"
-        text = _kilo(value) + _band(row, name, 1e3)
+        """Return a load with the number of the scene that it comes from, where there are several."""
+        text = load_cell(row, name)
         return f"{text} ({row.scene[name]})" if len(self.scenes) > 1 and name in row.scene else text
 
     def _legend(self) -> list[str]:
@@ -341,6 +352,7 @@ class DesignLoad:
                 for name in BANDED:
                     low, high = row.band.get(name, (0.0, 0.0))
                     record.update({f"{name}_low": low, f"{name}_high": high})
+                record.update((f"{name}_design", row.design[name]) for name in DESIGNED)
             record.update(zip(_VECTOR, row.impulse_vector.tolist(), strict=True))
             if len(self.scenes) > 1:
                 for name in ENVELOPED:
@@ -403,6 +415,7 @@ _UNITS = {
     "moment": "N m",
 }
 _UNITS |= {f"{name}_{end}": _UNITS[name] for name in BANDED if name in _UNITS for end in ("low", "high")}
+_UNITS |= {f"{name}_design": _UNITS[name] for name in DESIGNED}
 
 
 def _of_moments(rows: tuple[ElementDesign, ...]) -> str:
@@ -417,24 +430,6 @@ def _of_yielding(rows: tuple[ElementDesign, ...]) -> str:
     if not any(row.has_yielded for row in rows):
         return ""
     return " Where a post yields it is the moment that the post resists over the arm of the 50-ms force."
-
-
-def _kilo(value: float) -> str:
-    return f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
-
-
-def _band(row: ElementDesign, name: str, size: float) -> str:
-    """Return the band of a value as text, " [low, high]"; "" where there is none."""
-    if name not in row.band:
-        return ""
-    form = {"height": "{:.2f}", "dynamic_load_factor": "{:.2f}", "direction": "{:.0f}"}.get(name)
-    low, high = (
-        _kilo(end / size) if form is None else without_sign_of_zero(form.format(end))
-        for end in row.band[name]
-    )
-    if name == "direction" and low == high:  # of walls it is that of the normal
-        return ""
-    return f" [{low} to {high}]"
 
 
 def _pipes(cells: tuple[str, ...] | list[str]) -> str:

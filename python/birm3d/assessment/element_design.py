@@ -21,6 +21,7 @@ from .oscillator import LEAST_INTERVALS, resistance
 
 __all__ = [
     "BANDED",
+    "DESIGNED",
     "ENVELOPED",
     "ElementDesign",
     "System",
@@ -38,7 +39,10 @@ Floats = npt.NDArray[np.float64]
 ENVELOPED = ("impulse", "peak_force", "force_50ms", "moment", "equivalent_static_force")
 """Values of which the greatest over all scenes counts, each from a scene of its own."""
 
-BANDED = (*ENVELOPED, "height", "direction", "dynamic_load_factor")
+DESIGNED = (*ENVELOPED, "height")
+"""Values that have a design value: the greater asks for more."""
+
+BANDED = (*DESIGNED, "direction", "dynamic_load_factor")
 """Values that have a band over the vehicles of a class."""
 
 _CLASS = 60.0
@@ -124,6 +128,16 @@ class ElementDesign:
     case: Result | Scene | None = None
 
     @property
+    def design(self) -> Mapping[str, float]:
+        """Design value of each enveloped value and of the height, SI: the upper end of its band.
+
+        The value itself where that is greater, or where there is no band. One vehicle of the class in ten
+        asks for more. No partial factor is in it. Of the impulse the size counts, with its sign.
+        """
+        ends = {name: (getattr(self, name), *self.band.get(name, ())) for name in DESIGNED}
+        return {name: float(max(values, key=abs)) for name, values in ends.items()}
+
+    @property
     def dynamic_load_factor(self) -> float:
         """``equivalent_static_force`` over ``peak_force``; 0 without load."""
         return self.equivalent_static_force / self.peak_force if self.peak_force > 0.0 else 0.0
@@ -151,12 +165,16 @@ class ElementDesign:
             "has_yielded": self.has_yielded,
             "scene": dict(self.scene),
             "band": {name: list(ends) for name, ends in self.band.items()},
+            "design": dict(self.design),
         }
 
     def __repr__(self) -> str:
+        force = self.design["equivalent_static_force"]
+        design = f"; design: {force:.4g} N, {self.design['moment']:.4g} N m" if self.band else ""
         return (
             f"ElementDesign({self.name!r}, force_50ms={self.force_50ms:.4g} N at {self.height:.2f} m, "
-            f"moment={self.moment:.4g} N m, equivalent_static_force={self.equivalent_static_force:.4g} N)"
+            f"moment={self.moment:.4g} N m, "
+            f"equivalent_static_force={self.equivalent_static_force:.4g} N{design})"
         )
 
 

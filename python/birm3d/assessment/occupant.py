@@ -107,7 +107,7 @@ def occupant_risk(
 
     def look(run: Result) -> OccupantRisk:
         pulse = pulse_of_result(run, point, part)
-        return OccupantRisk(pulse, _head_ahead(run, point, part, head_x), edition)
+        return OccupantRisk(pulse, _head_ahead(run, point, part, head_x), edition, is_computed=True)
 
     if isinstance(result, Result):
         return look(result)

@@ -27,6 +27,10 @@ CAUTION = (
     "and intrusion are left out. Of a computed run the vehicle is one rigid body: its engine does not stop "
     "before the cabin does, so that peaks of short means differ from a gauge's."
 )
+_NO_BAND = (
+    "No band: these are values of one vehicle. occupant_risk(birm3d.predict(simulation)) has those of others "
+    "of its class."
+)
 _FORWARD = 0.5
 """Gain of speed along the vehicle above which it is pushed on, not braked [m/s]."""
 _PUSHED_ON = (
@@ -40,12 +44,14 @@ class OccupantRisk:
     """Values of occupant risk with their limits; made by :func:`birm3d.occupant_risk`.
 
     A value that needs a channel which was not given raises a ValueError that names it; the table says so.
+    Values of a computed run, not of channels (``is_computed``), have no band, and the table says so.
     """
 
-    def __init__(self, pulse: Pulse, head_x: float, edition: int) -> None:
+    def __init__(self, pulse: Pulse, head_x: float, edition: int, *, is_computed: bool = False) -> None:
         self.pulse = pulse
         self.head_x = head_x
         self.edition = edition
+        self.is_computed = is_computed
         self._flail: FlailSpace = flail_space(pulse)
 
     @property
@@ -195,13 +201,16 @@ class OccupantRisk:
             if strike is None
             else f"the occupant strikes at {strike * 1e3:.1f} ms"
         )
-        lines = [f"occupant risk: {when}", criteria_text(self.criteria), *self.missing, *self.notes, CAUTION]
-        return "\n".join(lines)
+        return "\n".join([f"occupant risk: {when}", criteria_text(self.criteria), *self._foot()])
+
+    def _foot(self) -> list[str]:
+        """Return the lines below the table."""
+        return [*self.missing, *self.notes, CAUTION, *([_NO_BAND] if self.is_computed else [])]
 
     __str__ = summary
 
     def _repr_html_(self) -> str:
-        return criteria_html("occupant risk", self.criteria, " ".join((*self.missing, *self.notes, CAUTION)))
+        return criteria_html("occupant risk", self.criteria, "\n".join(self._foot()))
 
     def __repr__(self) -> str:
         return f"OccupantRisk({', '.join(f'{name}={value:.4g}' for name, value in self.to_dict().items())})"

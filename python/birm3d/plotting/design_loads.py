@@ -37,10 +37,10 @@ _LOAD_SHARE, _ROOM = 0.01, 1.08
 def plot_design_load(loads: DesignLoad) -> Figure:
     """Return loads by element, force and moment of the governing one, and its response spectrum.
 
-    The governing element has the greatest equivalent static force. Its histories are those of the scene that
-    this force comes from; a value of the table from another scene is a line. Unfiltered lines are thin. A
-    blow of a few milliseconds that would flatten the rest is cut off, and its peak is written beside it. At
-    most 12 elements are drawn, the most loaded ones.
+    The governing element has the greatest design value of the equivalent static force. Its histories are
+    those of the vehicle and scene that its own force comes from; a value of the table from another scene is
+    a line. Unfiltered lines are thin. A blow of a few milliseconds that would flatten the rest is cut off,
+    and its peak is written beside it. At most 12 elements are drawn, the most loaded ones.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def _bars(axes: Axes, loads: DesignLoad) -> None:
                 low, high = row.band[name]
                 axes.vlines(at, low / 1e3, high / 1e3, color="k", lw=1.0)
     if any(row.band for row in rows):
-        axes.plot([], [], "k-", lw=1.0, label="80 % of the class")
+        axes.plot([], [], "k-", lw=1.0, label="80 % of the class; design: its upper end")
     axes.set_xticks(place, [row.name for row in rows], fontsize="small")
     if len(rows) > 4:
         axes.tick_params("x", labelrotation=30)
@@ -117,7 +117,7 @@ def _force(
     axes.plot(ms, mean / 1e3, color=BLUE, ls=DASHED, lw=1.8, label="mean over the last 50 ms")
     _mark(axes, ms, mean / 1e3, "kN", row.force_50ms / 1e3, other)
     level = row.equivalent_static_force / 1e3
-    axes.axhline(level, color=RED, ls=DASH_DOT, lw=1.4, label=f"equivalent static, {level:,.0f} kN")
+    axes.axhline(level, color=RED, ls=DASH_DOT, lw=1.4, label=_static_label(row))
     shown = readable_level(smooth, interval)
     levels = (float(mean.max()), row.force_50ms, row.equivalent_static_force)
     top = max(min(float(smooth.max()), shown), *levels) / 1e3
@@ -125,6 +125,13 @@ def _force(
     axes.set_ylabel("force [kN]")
     name_cut_peaks([(axes, [(ms, smooth / 1e3)], "kN")])
     axes.set_title(f"{row.name}: force at {round(degrees)}° from the normal", fontsize="medium")
+
+
+def _static_label(row: ElementDesign) -> str:
+    """Return the name of the line, with the design value where it is another one."""
+    own, design = row.equivalent_static_force, row.design["equivalent_static_force"]
+    more = f"; design {design / 1e3:,.0f} kN" if design > own else ""
+    return f"equivalent static, {own / 1e3:,.0f} kN{more}"
 
 
 def _moment(axes: Axes, row: ElementDesign, load: ElementLoad, other: str | None) -> None:

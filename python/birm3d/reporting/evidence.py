@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..assessment import Rating
 from ..assessment.criteria import without_sign_of_zero
 from ..base.plain_words import plain_words
 from ..plotting.energies import plot_energies
@@ -16,9 +17,11 @@ from ..result.event import outcome_words
 from ..result.summary import shown_as
 from .blocks import Block, Caution, Section, Table, Text
 from .figures import figure
-from .given_tests import Compared
+from .given_tests import Compared, GivenTest
 from .numbers import percent
-from .study_case import Case
+from .published_class import class_of
+from .study_case import ROADSIDE, Case
+from .tests_verdict import distance_past
 from .uncertainty import computing_error
 
 __all__ = ["balance_section", "beyond_tests", "validation_section"]
@@ -45,7 +48,7 @@ def validation_section(case: Case) -> Section:
     blocks: list[Block] = [Text(_STANDARDS)]
     if case.tests:
         head = ("test", "like this scene in", "quantity", "measured", "computed", "error", "fitted")
-        found = [_row(one) for one in case.tests]
+        found = [row for one in case.tests for row in _rows(one)]
         blocks.append(Table("Given tests nearest to this scene", head, found, note=_FITTED))
         notes = {one.test.name: one.test.note for one in case.tests if one.test.note}
         if notes:
@@ -64,25 +67,35 @@ def validation_section(case: Case) -> Section:
     return Section("Validation", "validation", blocks)
 
 
-def _row(one: Compared) -> tuple[str, ...]:
+def _rows(one: Compared) -> Iterator[tuple[str, ...]]:
+    """Yield the row of a value; of containment a second one, of the class."""
     test = one.test
     alike = ", ".join(one.alike) if one.alike else "nothing"
     fitted = "yes" if test.fitted else "no"
-    if isinstance(test.measured, bool):
-        words = {True: "contained", False: "not contained"}
-        verdict = "right" if one.right else "WRONG"
-        return (
-            test.name,
-            alike,
-            "containment",
-            words[test.measured],
-            words[bool(one.computed)],
-            verdict,
-            fitted,
-        )
-    label, size, unit = shown_as(test.quantity)
-    values = [f"{value / size:.3g} {unit}".strip() for value in (test.measured, one.computed)]
-    return test.name, alike, label, *values, f"{one.error:+.0%}", fitted
+    if one.rating is None:
+        label, size, unit = shown_as(test.quantity)
+        values = [f"{value / size:.3g} {unit}".strip() for value in (test.measured, one.computed)]
+        yield test.name, alike, label, *values, f"{one.error:+.0%}", fitted
+        return
+    measured, computed = (
+        "contained" if contained else "not contained" for contained in (test.measured, one.computed)
+    )
+    yield test.name, alike, "containment", measured, computed, "right" if one.right else "WRONG", fitted
+    judged = "WRONG" if one.class_judged == "wrong" else str(one.class_judged)
+    yield test.name, alike, "class or penetration", *_classes(test, one.rating), judged, fitted
+
+
+def _classes(test: GivenTest, rating: Rating) -> tuple[str, str]:
+    """Return the class that was published, with its penetration if there is one, and that computed."""
+    own = class_of(rating)
+    if rating.standard not in ROADSIDE:
+        own = f"{own}, {distance_past(rating.penetration)}"
+    if not test.published_class:
+        return "–", own
+    if test.penetration is None:
+        return test.published_class, own
+    limit = "at most " if test.penetration_kind == "limit" else ""
+    return f"{test.published_class}, {limit}{test.penetration:g} m", own
 
 
 def _not_alike(tests: list[Compared]) -> str:

@@ -4,46 +4,32 @@ Measured values come with the package: wall tests of NHTSA and published tests o
 is computed when it is asked for, with the presets of the version that is asked.
 """
 
-# Longer than 300 lines: one page, with a function for each of its parts.
 from __future__ import annotations
 
 import csv
 import io
-import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING
 
 from .. import units
-from ..assessment import rate, test_matrix
+from ..assessment import Rating, rate, test_matrix
 from ..barrier import Barrier
-from ..barrier.kinds import Jersey, MeshBarrier
 from ..signals.reference import nhtsa_tests
 from ..simulation import Simulation, presets
 from ..vehicle import Vehicle
+from .likeness import Facts, Family, distance, likeness, side_of
+from .published_class import Judgement, judged_class
 
 if TYPE_CHECKING:
     from ..result.result import Result
     from ..scene.scene import Scene
 
-__all__ = ["Compared", "Facts", "GivenTest", "errors", "given_tests", "likeness", "nearest"]
+__all__ = ["Compared", "GivenTest", "errors", "given_tests", "nearest"]
 
-Family: TypeAlias = Literal["wall", "posts", "concrete", "other", "none"]
-
-_GROUPS = (
-    ("car", "minivan"),
-    ("pickup", "van"),
-    ("truck", "cab_over_truck", "bus"),
-    ("tractor_semitrailer", "tractor", "semi_trailer"),
-)
-_SPEED, _ANGLE = 0.1, 5.0  # speeds (relative) and angles [deg] that differ by less are called the same
-# Differences of this size count 1: logarithms of the ratio of speeds and of masses, and angles [deg].
-_SPEED_SCALE, _ANGLE_SCALE, _MASS_SCALE = 0.4, 30.0, 0.8
-_OTHER_KIND, _OTHER_GROUP, _OTHER_FAMILY, _OTHER_SIDE = 0.3, 1.0, 1.0, 1.0
-_LEAST_SPEED = 0.1  # m/s
 _NOTHING_MORE = ("",) * 6  # a recipe whose vehicle says all has no other entries
 _FAMILIES: dict[str, Family] = {
     "bollards": "posts",
@@ -70,6 +56,13 @@ class GivenTest:
         not what it predicts.
     note, standard, vehicle_class, published : str
         Of tests of barriers: what was not published, and what the test was rated as.
+    published_class : str
+        Class of penetration by the standard's own rule, or verdict and classes of a roadside standard; ``""``
+        where none was published.
+    penetration : float or None
+        As it was published [m]; ``None``: it was not.
+    penetration_kind : str
+        ``"dynamic"``, ``"limit"`` where it was published as an upper one, ``""`` where it is not said.
     recipe : tuple of str
         Vehicle, mass rule, mass [kg], barrier, sizes, speed [km/h], angle [deg], yaw of the nose [deg].
     """
@@ -85,6 +78,9 @@ class GivenTest:
     standard: str = ""
     vehicle_class: str = ""
     published: str = ""
+    published_class: str = ""
+    penetration: float | None = None
+    penetration_kind: str = ""
 
     def simulation(self) -> Simulation:
         """Return the scene that stands for the test."""
@@ -92,9 +88,14 @@ class GivenTest:
 
     def computed(self, result: Result) -> float | bool:
         """Return what a run of the scene says of the quantity."""
-        if self.quantity == "containment":
-            return rate(result, self.standard, vehicle_class=self.vehicle_class or None).contained
-        return float(result.metrics[self.quantity])
+        rating = self.rated(result)
+        return float(result.metrics[self.quantity]) if rating is None else rating.contained
+
+    def rated(self, result: Result) -> Rating | None:
+        """Return the rating of a run of the scene; ``None`` of a test of another quantity."""
+        if self.quantity != "containment":
+            return None
+        return rate(result, self.standard, vehicle_class=self.vehicle_class or None)
 
 
 @dataclass(frozen=True)
@@ -108,13 +109,16 @@ class Compared:
         That stands for the test.
     computed : float or bool
     alike : tuple of str
-        In what it is like the scene that was asked about, see :func:`likeness`.
+        In what it is like the scene that was asked about, see :func:`birm3d.reporting.likeness.likeness`.
+    rating : Rating or None
+        Of the scene; ``None`` where the quantity is not containment.
     """
 
     test: GivenTest
     scene: Scene
     computed: float | bool
     alike: tuple[str, ...]
+    rating: Rating | None = None
 
     @property
     def error(self) -> float | None:
@@ -127,6 +131,11 @@ class Compared:
     def right(self) -> bool | None:
         """Of containment whether computed is as measured."""
         return self.computed == self.test.measured if isinstance(self.test.measured, bool) else None
+
+    @property
+    def class_judged(self) -> Judgement | None:
+        """Of containment whether class or penetration is as published; ``None`` of other quantities."""
+        return None if self.rating is None else judged_class(self.test.published_class, self.rating)
 
 
 @cache
@@ -205,49 +214,12 @@ def _published() -> list[GivenTest]:
             standard=row["standard"],
             vehicle_class=row["vehicle_class"],
             published=row["published"],
+            published_class=row["published_class"],
+            penetration=float(row["penetration_m"]) if row["penetration_m"] else None,
+            penetration_kind=row["penetration_kind"],
         )
         for row in csv.DictReader(lines)
     ]
-
-
-class Facts(NamedTuple):
-    """What of a scene is compared with others."""
-
-    kind: str
-    family: Family
-    mass: float
-    speed: float
-    angle: float
-    side: int = 0  # that goes ahead: 0 front, 1 right, 2 rear, 3 left
-
-    @classmethod
-    def of(cls, scene: Scene) -> Facts:
-        """Return the facts of a scene; an angle and its supplement are the same."""
-        vehicle = scene.vehicle
-        acute = min(scene.impact_angle, 180.0 - scene.impact_angle)
-        return cls(
-            vehicle.kind or "",
-            family(scene.barrier),
-            vehicle.mass,
-            scene.impact_speed,
-            acute,
-            _side(scene.impact_yaw),
-        )
-
-
-def _side(yaw: float) -> int:
-    return round(yaw / 90.0) % 4
-
-
-def family(barrier: Barrier | None) -> Family:
-    """Return what kind of surface a vehicle meets."""
-    if barrier is None:
-        return "none"
-    if barrier.has_posts:
-        return "posts"
-    if isinstance(barrier, Jersey):
-        return "concrete"
-    return "other" if isinstance(barrier, MeshBarrier) else "wall"
 
 
 @cache
@@ -258,7 +230,7 @@ def _facts(recipe: tuple[str, ...]) -> Facts:
         test = nhtsa_tests()[vehicle]
         return Facts(_kind_of(presets.preset_for(test)), "wall", test.mass, test.speed, 90.0)
     if rule in ("gvw", "similar"):
-        speed_si, side = units.km_h(float(speed)), _side(float(yaw))
+        speed_si, side = units.km_h(float(speed)), side_of(float(yaw))
         return Facts(_kind_of(vehicle), _FAMILIES[barrier], float(mass), speed_si, float(angle), side)
     return Facts.of(_simulation(recipe).scene)
 
@@ -266,35 +238,6 @@ def _facts(recipe: tuple[str, ...]) -> Facts:
 @cache
 def _kind_of(preset: str) -> str:
     return Vehicle.preset(preset).kind or ""
-
-
-def _group(kind: str) -> tuple[str, ...]:
-    return next((group for group in _GROUPS if kind in group), (kind,))
-
-
-def likeness(one: Facts, other: Facts) -> tuple[str, ...]:
-    """Return in what two scenes are alike: vehicle kind, barrier, speed (10 %), angle (5 degrees).
-
-    Angles are alike only where the same side of the vehicle goes ahead.
-    """
-    same = {
-        "vehicle": one.kind == other.kind,
-        "barrier": one.family == other.family,
-        "speed": abs(other.speed - one.speed) <= _SPEED * one.speed,
-        "angle": one.side == other.side and abs(other.angle - one.angle) <= _ANGLE,
-    }
-    return tuple(name for name, alike in same.items() if alike)
-
-
-def _distance(one: Facts, other: Facts) -> float:
-    kinds = 0.0
-    if one.kind != other.kind:
-        kinds = _OTHER_KIND if _group(one.kind) == _group(other.kind) else _OTHER_GROUP
-    families = 0.0 if one.family == other.family else _OTHER_FAMILY
-    speed = abs(math.log(max(other.speed, _LEAST_SPEED) / max(one.speed, _LEAST_SPEED))) / _SPEED_SCALE
-    mass = abs(math.log(other.mass / one.mass)) / _MASS_SCALE
-    sides = 0.0 if one.side == other.side else _OTHER_SIDE
-    return kinds + families + sides + speed + mass + abs(other.angle - one.angle) / _ANGLE_SCALE
 
 
 def nearest(scene: Scene, count: int = 10) -> list[Compared]:
@@ -313,19 +256,19 @@ def nearest(scene: Scene, count: int = 10) -> list[Compared]:
     """
     here = Facts.of(scene)
     recipes = dict.fromkeys(test.recipe for test in given_tests())
-    order = sorted(recipes, key=lambda recipe: _distance(here, _facts(recipe)))[:count]
+    order = sorted(recipes, key=lambda recipe: distance(here, _facts(recipe)))[:count]
     found = []
     for recipe in order:
         simulation = _simulation(recipe)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # they are not about the run of the dossier
             result = Simulation.from_scene(simulation.scene).run()
-        there = Facts.of(simulation.scene)
-        found += [
-            Compared(test, simulation.scene, test.computed(result), likeness(here, there))
-            for test in given_tests()
-            if test.recipe == recipe
-        ]
+        alike = likeness(here, Facts.of(simulation.scene))
+        for test in given_tests():
+            if test.recipe == recipe:
+                rating = test.rated(result)
+                computed = test.computed(result) if rating is None else rating.contained
+                found.append(Compared(test, simulation.scene, computed, alike, rating))
     return found
 
 

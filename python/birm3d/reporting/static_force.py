@@ -21,13 +21,15 @@ def _assumed(loads: DesignLoad) -> str:
     if ASSUMED not in loads.caution:
         return ""
     found = greatest_of_periods(loads)
-    more = "" if found is None else f"; up to {found[0] / 1e3:,.0f} kN at {found[1]:.2g} s"
+    own = loads.governing.equivalent_static_force
+    more = "" if found is None else f"; up to {found[0] / own:.2f} times as much at {found[1]:.2g} s"
     return f" (assumed{more})"
 
 
 def band_of_design(row: ElementDesign) -> str:
-    """Return the band of the force over the class, as the end of a line; "" where there is none."""
+    """Return this vehicle's force and the band over the class, as the end of a line; "" without a band."""
     if "equivalent_static_force" not in row.band:
         return ""
-    low, high = (end / 1e3 for end in row.band["equivalent_static_force"])
-    return f"; 80 % of the class: {low:,.0f} to {high:,.0f} kN"
+    own, *ends = (row.equivalent_static_force, *row.band["equivalent_static_force"])
+    low, high = (f"{end / 1e3:,.0f}" for end in ends)
+    return f"; this vehicle {own / 1e3:,.0f} kN, 80 % of the class {low} to {high} kN"

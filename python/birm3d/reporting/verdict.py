@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Iterator, Sequence
-from statistics import median
 
 from ..assessment import DesignLoad, OccupantRisk, Rating
 from ..assessment.criteria import Criterion
@@ -13,21 +12,19 @@ from ..assessment.rating_caution import model_cautions
 from ..assessment.vehicles import HEAVY_KG
 from ..result.element_loads import touched_elements
 from ..result.event import outcome_words
-from ..result.summary import shown_as
 from ..vehicle.title import kind_words
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
 from .evidence import beyond_tests
-from .given_tests import Compared, errors
 from .numbers import percent
 from .static_force import band_of_design, made_by
 from .study_case import ROADSIDE, Case, is_oblique
 from .study_verdict import study_answers, study_table
+from .tests_verdict import answers_of_tests
 from .uncertainty import computing_error
 
 __all__ = ["criteria_table", "risk_section", "verdict_section"]
 
-_ALL_ALIKE = 4  # vehicle, barrier, speed, angle
 _KNOWS = " knows: "  # in the error of a standard that does not know the vehicle
 _FIRST_UNIT = "Motion and angles are those of the leading unit; a rating has the greatest roll of any."
 _NO_BARRIER = "There is no barrier in this scene: nothing is rated."
@@ -116,27 +113,14 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         alone = "this run alone, " if case.study is not None and len(case.design_loads.scenes) == 1 else ""
         yield (
             "What does its foundation have to carry?",
-            f"{alone}{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
-            f"{row.height:.2f} m, {made_by(case.design_loads)}{band_of_design(row)}",
+            f"{alone}{row.name}: {'design with an ' if row.band else ''}equivalent static force "
+            f"{row.design['equivalent_static_force'] / 1e3:,.0f} kN at {row.design['height']:.2f} m, "
+            f"{made_by(case.design_loads)}{band_of_design(row)}",
         )
     yield "Would occupants be at risk?", _risk_line(case)
     yield "How well is it computed?", _computed_line(case)
     yield from beyond_tests(case)
-    found = errors(case.tests)
-    rights = [one.right for one in case.tests if one.right is not None]
-    told = []
-    if rights:
-        wrong = [one.test.name for one in case.tests if one.right is False]
-        names = f" (WRONG: {'; '.join(wrong)})" if wrong else ""
-        told.append(f"containment as in {sum(rights)} of {len(rights)} tests{names}")
-    if found:
-        values = "1 value that was" if len(found) == 1 else f"{len(found)} values that were"
-        told.append(f"median error {median(map(abs, found)):.0%} in {values} not fitted")
-        told += [f"{one.test.name}, {_quantity(one)}: {one.error:+.0%}" for one in _twins(case.tests)]
-    if told and not any({"vehicle", "barrier"} <= set(one.alike) for one in case.tests):
-        told.append("none of these tests has both this kind of vehicle and this kind of barrier")
-    if told:
-        yield "How well does the model do in given tests nearby?", "; ".join(told)
+    yield from answers_of_tests(case)
 
 
 def _other_outcomes(case: Case) -> str:
@@ -172,17 +156,6 @@ def _reason(case: Case, reason: str) -> str:
     return f"it knows no {_kind(case)}, but {kind_words(vehicles)}" if vehicles else text
 
 
-def _twins(tests: Sequence[Compared]) -> list[Compared]:
-    """Return the values of tests that are like the scene in all that is compared, and were not fitted."""
-    return [
-        one for one in tests if len(one.alike) == _ALL_ALIKE and one.error is not None and not one.test.fitted
-    ]
-
-
-def _quantity(one: Compared) -> str:
-    return shown_as(one.test.quantity)[0]
-
-
 def _penetration(rating: Rating) -> str:
     distance = rating.penetration
     if rating.standard in ROADSIDE:
@@ -207,10 +180,15 @@ def _chances(case: Case, standard: str) -> str:
 
 
 def _load_band(case: Case) -> str:
-    name = "peak_element_force_50ms"
-    if isinstance(case.bands, str) or name not in case.bands.prediction.low:
+    force, moment = "peak_element_force_50ms", "peak_overturning_moment_50ms"
+    if isinstance(case.bands, str) or force not in case.bands.prediction.low:
         return ""
-    return f"; 80 % of the class: {band_of(case.bands, name, 1e3, ',.0f')} kN on the most loaded element"
+    own, high = case.result.metrics, case.bands.prediction.high
+    most = [f"{max(own[name], high[name]) / 1e3:,.0f}" for name in (force, moment)]
+    return (
+        f"; 80 % of the class: {band_of(case.bands, force, 1e3, ',.0f')} kN on the most loaded element; "
+        f"design with {most[0]} kN and {most[1]} kN m"
+    )
 
 
 def _risk_line(case: Case) -> str:

@@ -31,6 +31,7 @@ END_REASONS = {
 }
 """Why a run ended, in words."""
 
+_NO_BAND = "no band: these are numbers of one vehicle; birm3d.predict(sim) has the bands over its class"
 _UNITS_MEET = 90.0  # deg between tractor and trailer: a side of the one stands before the front of the other
 
 
@@ -84,6 +85,7 @@ def report(result: RunAnalysis) -> str:
             f"{load.peak_overturning_moment_50ms / 1e3:.3g} kN m"
         )
     lines += [
+        f"  {_NO_BAND}",
         "",
         "left out",
         *(f"  {line}" for line in omitted_lines(result)),
