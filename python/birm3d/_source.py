@@ -1,8 +1,8 @@
 """Which code this is: a hash of its sources, and the commit where the build knew it.
 
-The build runs this file as a script, which imports nothing of the package. It writes :data:`RECORD` beside the
-compiled module, with the hash of the C++ sources. Those of Python are hashed when the source is asked for.
-In a checkout ``python python/birm3d/_source.py`` prints the source without a build.
+The build runs this file as a script, which imports nothing of the package. It writes :data:`RECORD` beside
+the compiled module, with the hash of the C++ sources. Those of Python are hashed when the source is asked
+for. In a checkout ``python python/birm3d/_source.py`` prints the source without a build.
 """
 
 from __future__ import annotations

@@ -2,7 +2,8 @@
 
 A change of physics or of a preset alters the hashes of the scenes that use it. Then run
 `python tests/python/test_state_hashes.py`, replace the lines that changed, and say why in the commit.
-If the hash of the kept capsule is one of them, `python tests/python/test_state_hashes.py --keep` makes it anew.
+Where the hash of the kept capsule is one of them, make that anew: `python tests/python/test_state_hashes.py
+--keep`.
 """
 
 from __future__ import annotations
