@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from birm3d import Barrier, FreeStanding, Result, Settings, Simulation, Vehicle, scenes, units
 from birm3d._source import installed_source, shortened
-from birm3d.base.made_with import platform_facts
 from birm3d.io.file_format import checksum
+from birm3d.io.made_with import platform_facts
 
 CAR = Vehicle.preset("passenger_car", mesh_density=0.15)
 SOURCE = installed_source()

@@ -14,7 +14,7 @@ import birm3d
 import pytest
 from birm3d import _source
 from birm3d._source import RECORD, Source, installed_source, shortened
-from birm3d.base.made_with import code_to_install, facts_text, platform_facts
+from birm3d.io.made_with import code_to_install, facts_text, platform_facts
 
 ROOT = Path(__file__).resolve().parents[2]
 OLD_RESULT = ROOT / "tests/data/results/bollards_0_1_0.npz"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 
-from ..base.made_with import facts_text, platform_facts
 from ..base.plain_words import plain_words
+from ..io.made_with import facts_text, platform_facts
 from ..result.metrics import METRIC_UNITS
 from .blocks import Block, Items, Listing, Section, Table, Text
 from .study_case import Case

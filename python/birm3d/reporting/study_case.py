@@ -15,7 +15,7 @@ from ..assessment import (
     occupant_risk,
     rate,
 )
-from ..base.made_with import code_text
+from ..io.made_with import code_text
 from ..result.result import Result
 from ..simulation import Simulation
 from ..study import Study

@@ -23,9 +23,9 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from .. import _core
-from ..base.made_with import code_text, code_to_install, platform_facts
 from ..io.atomic_write import check_format, whole_file
 from ..io.file_format import MOST_BYTES, FileFormatError, check_sum, checksum, read_json, received
+from ..io.made_with import code_text, code_to_install, platform_facts
 from . import result_file
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..base.made_with import code_text
+from ..io.made_with import code_text
 from ..vehicle.unit_shapes import unit_shapes
 from .frames import Frames, frame_times
 from .record import RunRecord

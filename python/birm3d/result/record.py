@@ -14,7 +14,7 @@ from .._version import __version__
 from ..base.arguments import checked
 from ..base.checks import index as place
 from ..base.frozen_mapping import FrozenMapping
-from ..base.made_with import platform_facts
+from ..io.made_with import platform_facts
 from ..scene.scene import Scene
 from .frames import Frames, pose
 from .stored import Stored, StoredHistory

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from ..base.frozen_mapping import FrozenMapping
-from ..base.made_with import code_to_install, facts_text, platform_facts
 from ..io.file_format import reads
+from ..io.made_with import code_to_install, facts_text, platform_facts
 from ..result import capsule
 from ..result.result import Result, load
 
