@@ -144,6 +144,7 @@ _GIVEN: dict[str, tuple[str, dict[str, float]]] = {
     "mass per length": ("kg/m", {"kg/m": 1.0, "t/m": 1e3, "lb/ft": lb / ft}),
     "pressure per length": ("Pa/m", {"Pa/m": 1.0, "kPa/m": 1e3, "MPa/m": 1e6}),
     "time per length": ("s/m", {"s/m": 1.0}),
+    "inertia": ("kg m^2", {**dict.fromkeys(("kg m^2", "kg m2", "kg m²"), 1.0), "lb ft^2": lb * ft**2}),
 }
 _QUANTITIES = {**_MEASURED, **_GIVEN}
 _VALUE = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", re.DOTALL)

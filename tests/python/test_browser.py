@@ -1,9 +1,14 @@
-"""The pages in a real browser: nothing leaves the machine, no error, the slider moves, a phone shows them."""
+"""The pages in a real browser: nothing leaves the machine, no error, the slider moves, a phone shows them.
+
+Without a browser these tests are skipped. With BIRM3D_NEED_BROWSER=1 in the environment they fail.
+"""
 
 from __future__ import annotations
 
+import os
 import shutil
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +16,16 @@ import birm3d
 import pytest
 from birm3d import Barrier, Result, Simulation, Vehicle
 
-playwright = pytest.importorskip(
-    "playwright.sync_api", reason="no playwright to drive a browser with: pip install '.[browser]'"
-)
+NEEDED = os.environ.get("BIRM3D_NEED_BROWSER", "0") != "0"
+if NEEDED:
+    playwright = import_module("playwright.sync_api")
+else:
+    playwright = pytest.importorskip(
+        "playwright.sync_api", reason="no playwright to drive a browser with: pip install '.[browser]'"
+    )
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "google-chrome", "chromium-browser"))), None)
-pytestmark = pytest.mark.skipif(
-    CHROMIUM is None,
-    reason="no browser to show the page with: install Chromium (Debian: apt install chromium)",
-)
+MISSING = "no browser to show the page with: install Chromium (Debian: apt install chromium)"
+pytestmark = pytest.mark.skipif(CHROMIUM is None and not NEEDED, reason=MISSING)
 PHONE, DESK = {"width": 375, "height": 800}, {"width": 1100, "height": 900}
 
 
@@ -57,6 +64,7 @@ def wall_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
+    assert CHROMIUM is not None, MISSING
     with playwright.sync_playwright() as driver:
         # SwiftShader draws WebGL where there is no graphics card.
         options = ["--no-sandbox", "--enable-unsafe-swiftshader"]

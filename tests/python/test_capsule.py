@@ -12,9 +12,12 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, FreeStanding, Result, Settings, Simulation, Vehicle, scenes, units
+from birm3d._source import installed_source, shortened
 from birm3d.io.file_format import checksum
+from birm3d.io.made_with import platform_facts
 
 CAR = Vehicle.preset("passenger_car", mesh_density=0.15)
+SOURCE = installed_source()
 
 
 def preset() -> Simulation:
@@ -110,14 +113,16 @@ def test_a_stranger_can_open_it(path: Path, result: Result, tmp_path: Path) -> N
     assert manifest["format_version"] == 1
     assert manifest["state_hash"] == f"{result.state_hash:016x}"
     assert manifest["metrics"] == dict(result.metrics)
-    assert {"birm3d", "python", "numpy", "system", "machine"} <= set(manifest["made_with"])
+    assert {"birm3d", "source", "python", "numpy", "system", "machine"} <= set(manifest["made_with"])
     assert found["report.txt"].decode() == result.report() + "\n"
     (tmp_path / "vehicle.toml").write_bytes(found["vehicle.toml"])
     assert Vehicle.from_file(tmp_path / "vehicle.toml") == result.scene.vehicle
     (tmp_path / "result.npz").write_bytes(found["result.npz"])
     with np.load(tmp_path / "result.npz") as file:  # no pickle is needed
         assert np.array_equal(file["history/0/position"], result.position)
-    assert "birm3d rerun" in found["README.txt"].decode()
+    readme = found["README.txt"].decode()
+    assert "birm3d rerun" in readme
+    assert f"source {manifest['made_with']['source'][:12]}" in readme
 
 
 def test_the_same_run_gives_the_same_file(path: Path, result: Result, tmp_path: Path) -> None:
@@ -143,7 +148,7 @@ def test_a_saved_result_is_run_again_too(result: Result, tmp_path: Path) -> None
     result.save(tmp_path / "crash.npz")
     again = birm3d.rerun(tmp_path / "crash.npz")
     assert again.same
-    assert dict(again.made_with) == {"birm3d": birm3d.__version__}
+    assert again.made_with == again.made_here == result.made_with
 
 
 def with_another_end(result: Result, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -172,10 +177,29 @@ def test_other_bits_are_told(
     assert dict(again.differences) == {"delta_v": (2.0 * value, value), "gone": (1.0, None)}
     text = again.summary()
     assert "OTHER BITS" in text
-    assert f"written by  birm3d {birm3d.__version__}" in text
+    assert f"written by  birm3d {birm3d.__version__}, source {shortened(SOURCE.digest)}" in text
+    assert "the source is the same: compilers or machines differ" in text
     assert "-5.00e-01" in text
     assert command("rerun", str(path)) == 1
     assert f"{result.state_hash:016x}" in capsys.readouterr().out
+
+
+def test_other_bits_of_another_source_name_the_code(
+    result: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "other.birm3d"
+    facts = {**platform_facts(), "source": "a" * 32, "commit": "b" * 40}
+    with monkeypatch.context() as patch:
+        patch.setattr("birm3d.result.capsule.platform_facts", lambda: facts)
+        with_another_end(result, path, monkeypatch)
+    again = birm3d.rerun(path)
+    text = again.summary()
+    assert f"written by  birm3d {birm3d.__version__}, source {'a' * 12}, commit {'b' * 12}, python" in text
+    assert f"run now by  birm3d {birm3d.__version__}, source {shortened(SOURCE.digest)}" in text
+    assert f"for the same bits install what wrote it: birm3d {birm3d.__version__}, commit {'b' * 40}" in text
+    assert again.to_dict()["made_with"]["source"] == "a" * 32
+    result.capsule(tmp_path / "same.birm3d")
+    assert "install" not in birm3d.rerun(tmp_path / "same.birm3d").summary()
 
 
 def test_a_result_that_does_not_run_again_has_no_capsule(result: Result, tmp_path: Path) -> None:

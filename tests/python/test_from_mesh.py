@@ -118,6 +118,17 @@ def test_what_was_understood_is_told(from_deck: Vehicle) -> None:
     assert any("car.k" in source.text for source in from_deck._file.sources)
 
 
+def test_what_is_known_is_not_drawn(deck: Path, from_deck: Vehicle) -> None:
+    """Size and wheelbase are those of the mesh."""
+    assert set(from_deck.assumed_distributions()) == {
+        f"vehicle.{name}" for name in ("mass_center_height", "roll_inertia", "yaw_inertia")
+    }
+    known = {"inertia": (600.0, 2900.0, 3100.0), "center_of_mass": (-1.2, 0.0, 0.55)}
+    measured = Vehicle.from_mesh(deck, mass=MASS, kind="car", unit="mm", **known)
+    assert measured.assumed_distributions() == {}
+    assert not {"mass_center_height", "roll_inertia", "yaw_inertia"} & set(measured.scatter)
+
+
 def test_saved_vehicle_is_read_back(from_deck: Vehicle, tmp_path: Path) -> None:
     from_deck.save(tmp_path / "car.toml")
     back = Vehicle.from_file(tmp_path / "car.toml")
@@ -174,6 +185,7 @@ def test_mass_properties_are_those_that_are_given(car_stl: Path) -> None:
     np.testing.assert_allclose(own.inertia, inertia, rtol=1e-9, atol=1e-6)
     assert own.mass == 1650.0
     assert own.mass_center_height == pytest.approx(0.57)
+    assert own.with_inertia(yaw_inertia=3000.0).yaw_inertia == pytest.approx(3000.0)
     higher = Vehicle.from_mesh(car_stl, unit="mm", mass_center_height=0.6, **facts)
     assert higher.mass_center_height == pytest.approx(0.6)
 

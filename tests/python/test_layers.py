@@ -16,7 +16,7 @@ PACKAGE = Path(__file__).resolve().parents[2] / "python/birm3d"
 # From the bottom to the top. A module imports from its own folder and from lines above its own in this list.
 # The result is below the simulation, which makes it: a result knows the scene, not what ran it.
 LAYERS = (
-    ("_core", "_version", "base"),
+    ("_core", "_version", "_source", "base"),
     ("units",),
     ("io", "unit_check"),
     ("signals",),

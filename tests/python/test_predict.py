@@ -89,6 +89,7 @@ def test_draws_are_normal_and_independent() -> None:
     np.testing.assert_allclose(columns.std(axis=1), 1.0, atol=0.03)
     correlation = np.corrcoef(columns) - np.eye(len(columns))
     assert np.abs(correlation).max() < 0.1
+    assert np.abs(np.corrcoef(list(draws(5).values())) - np.eye(len(columns))).max() < 0.35, "of usual draws"
     assert quantiles(np.arange(10) + 0.5, 0.8) == pytest.approx((1.0, 5.0, 9.0))
 
 

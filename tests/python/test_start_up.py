@@ -12,7 +12,7 @@ import click
 import pytest
 from birm3d.cli.commands import COMMANDS, _cli
 
-SCIENCE = ("numpy", "scipy", "matplotlib", "pydantic", "pandas", "birm3d._core")
+SCIENCE = ("numpy", "scipy", "matplotlib", "pydantic", "pandas", "birm3d._core", "birm3d._source")
 
 
 def loaded_after(program: str) -> set[str]:

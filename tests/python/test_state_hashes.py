@@ -2,6 +2,8 @@
 
 A change of physics or of a preset alters the hashes of the scenes that use it. Then run
 `python tests/python/test_state_hashes.py`, replace the lines that changed, and say why in the commit.
+Where the hash of the kept capsule is one of them, make that anew: `python tests/python/test_state_hashes.py
+--keep`.
 """
 
 from __future__ import annotations
@@ -13,11 +15,16 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import birm3d
 import pytest
-from birm3d import Barrier, Simulation, Vehicle, scenes
+from birm3d import Barrier, Settings, Simulation, Vehicle, scenes
 from birm3d.study.verification.triangulated import triangulated
 
-FITTED = Path(__file__).parents[1] / "data/finite_element"
+DATA = Path(__file__).parents[1] / "data"
+FITTED = DATA / "finite_element"
+KEPT = DATA / "kept_run.birm3d"
+"""Capsule of a run of :data:`KEPT_SCENE`, as an earlier state of the code wrote it."""
+KEPT_SCENE = "coarse car, Jersey"
 
 
 def car(name: str, density: float = 0.2) -> Vehicle:
@@ -37,6 +44,10 @@ SCENES: dict[str, Callable[[], Simulation]] = {
     "paper pickup, bollards": lambda: Simulation(car("paper_pickup"), Barrier.bollards(), 20.0, 80.0, 0.2),
     "pickup, bollards": lambda: Simulation(car("pickup"), Barrier.bollards(), 20.0, 80.0, 0.2),
     "car, Jersey": lambda: Simulation(car("passenger_car"), Barrier.jersey(length=30.0), 25.0, 25.0),
+    KEPT_SCENE: lambda: Simulation(
+        *(car("passenger_car", 0.05), Barrier.jersey(length=30.0), 25.0, 25.0),
+        settings=Settings(output_interval=5e-3),
+    ),
     "semi, wall": lambda: Simulation(car("semi_truck"), Barrier.rigid_wall(), 15.0, 15.0, duration=0.5),
     "truck, pole of triangles": lambda: Simulation(
         car("cargo_truck"), triangulated(Barrier.pole()), 12.0, 90.0, duration=0.3
@@ -73,6 +84,7 @@ HASHES = {
     "paper pickup, bollards": "2f038a6a3b55c0df",
     "pickup, bollards": "3354f41e5aec3644",
     "car, Jersey": "233e81eac75e0986",
+    "coarse car, Jersey": "fc0c05f17c931ba6",
     "semi, wall": "8e7526cf9d9e85b4",
     "truck, pole of triangles": "f7544dec72f16591",
     "free-standing": "1b997ee804fb3d9b",
@@ -103,6 +115,16 @@ def test_no_bit_comes_from_the_processors_linear_algebra() -> None:
     assert dict(re.findall(r'"(.+)": "(.+)"', printed)) == HASHES
 
 
+def test_a_capsule_of_earlier_code_runs_to_the_same_bits() -> None:
+    again = birm3d.rerun(KEPT)
+    anew = "after a change on purpose: python tests/python/test_state_hashes.py --keep"
+    assert f"{again.expected_hash:016x}" == HASHES[KEPT_SCENE], anew
+    assert again.same, f"{again.summary()}\n{anew}"
+
+
 if __name__ == "__main__":
+    if "--keep" in sys.argv:
+        SCENES[KEPT_SCENE]().run().capsule(KEPT)
+        sys.exit()
     for scene, make in SCENES.items():
         print(f'    "{scene}": "{make().run().state_hash:016x}",')

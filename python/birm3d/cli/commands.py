@@ -108,8 +108,25 @@ class _Commands(click.Group):
             formatter.write_dl([(str(one.name), one.get_short_help_str(limit)) for one in shown])
 
 
+def _show_version(context: click.Context, _option: click.Parameter, wanted: bool) -> None:
+    """Print version and source; hashes of the package's files are made only then."""
+    if wanted:
+        from .._source import installed_source
+        from .._version import __version__
+
+        click.echo(f"birm3d {__version__}, {installed_source()}")
+        context.exit()
+
+
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="birm3d")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_show_version,
+    help="Show version, hash of the sources and commit, and exit.",
+)
 def _cli() -> None:
     """Impact response of vehicles and security or roadside barriers."""
 

@@ -17,7 +17,8 @@ __all__ = ["rerun"]
 def rerun(capsule: Path, as_json: bool) -> None:
     """Run a CAPSULE (.birm3d) or a saved result (.npz) once more and compare it bit for bit.
 
-    Exit code 0: the same bits. 1: other bits; then who wrote the file, and by how much the metrics differ.
+    Exit code 0: the same bits. 1: other bits; then which code wrote the file, and by how much the metrics
+    differ.
     """
     from ..simulation.rerun import rerun as run_again
 

@@ -22,7 +22,7 @@ from ..study.class_draws import parameter_of
 from ..study.predict import Prediction
 from ..study.predict_and_look import predict_and_look
 from ..study.whole_runs import look_at_study
-from ..vehicle.class_scatter import joined
+from ..vehicle.class_scatter import Z_80, joined
 from .blocks import Block, Caution, Table, Text
 from .shares import outcome_table
 
@@ -39,9 +39,14 @@ _PARTS = {
     "tire_friction": "friction of tyres on the ground",
     "edge_flank": "sideways force at a wall's rounded edge",
     "bed_fixings": "strength of the fixings of a load bed that slides",
+    "length": "length",
+    "width": "width",
+    "height": "height",
+    "wheelbase": "wheelbase",
+    "roll_inertia": "roll inertia",
+    "yaw_inertia": "yaw inertia",
 }
 _ROUNDING = 1e-6  # SI and degrees: values below are rounding errors
-_Z = 1.2816  # of the normal distribution, 80 %, two sides
 
 
 @dataclass(frozen=True)
@@ -171,7 +176,7 @@ def class_blocks(result: Result, bands: ClassBands | str) -> Iterator[Block]:
     for name, one in joined([unit.scatter for unit in vehicle.units], vehicle.zones_met).items():
         if parameter_of(name) not in predicted.drawn:
             continue
-        low, high = (one.median * math.exp(sign * _Z * one.log_sd) for sign in (-1.0, 1.0))
+        low, high = (one.median * math.exp(sign * Z_80 * one.log_sd) for sign in (-1.0, 1.0))
         rows.append((_PARTS[name], f"{one.median:.2f}", f"{low:.2f} to {high:.2f}"))
     head = ("quantity", "median factor on this vehicle's", "80 % of the class")
     yield Table("What differs between vehicles of the class", head, rows, numbers=True)

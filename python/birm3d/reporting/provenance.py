@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 
 from ..base.plain_words import plain_words
-from ..result.capsule import platform_facts
+from ..io.made_with import facts_text, platform_facts
 from ..result.metrics import METRIC_UNITS
 from .blocks import Block, Items, Listing, Section, Table, Text
 from .study_case import Case
@@ -51,7 +51,7 @@ def provenance_section(case: Case, capsule: bytes) -> Section:
             ("", "value"),
             [
                 ("state hash", f"{result.state_hash:016x}"),
-                ("run computed with", f"birm3d {result.version}"),
+                ("run computed with", facts_text(result.made_with)),
                 ("dossier made with", ", ".join(f"{name} {value}" for name, value in made.items())),
                 ("steps", f"{result.statistics.steps:,}, {result.statistics.rejected:,} redone"),
                 ("capsule's BLAKE2b", digest),

@@ -15,6 +15,7 @@ from ..assessment import (
     occupant_risk,
     rate,
 )
+from ..io.made_with import code_text
 from ..result.result import Result
 from ..simulation import Simulation
 from ..study import Study
@@ -118,7 +119,7 @@ def case_of(
     if again.state_hash != result.state_hash:
         raise ValueError(
             f"result must run again to the same bits, got state {again.state_hash:016x} after "
-            f"{result.state_hash:016x} (result of birm3d {result.version}): run its scene anew"
+            f"{result.state_hash:016x} (result of {code_text(result.made_with)}): run its scene anew"
         )
     framed = result if result.frames is not None else result.with_frames(min(_FRAMES, len(result.time)))
     ratings, reasons = _rated(framed, asked)

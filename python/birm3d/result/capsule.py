@@ -2,8 +2,9 @@
 
 A capsule is a zip archive. Any tool opens it, and nothing in it is a pickle:
 
-- ``manifest.json``: format and its version, versions and platform that made it, steps, state hash, metrics,
-  and checksums (BLAKE2b, 32 hexadecimal digits) of itself and of each other member;
+- ``manifest.json``: format and its version, versions, source (:mod:`birm3d._source`) and platform that made
+  it, steps, state hash, metrics, and checksums (BLAKE2b, 32 hexadecimal digits) of itself and of each other
+  member;
 - ``result.npz``: what :meth:`birm3d.Result.save` writes: scene, settings and histories by value;
 - ``vehicle.toml``: the vehicle as a file of its own, where it has one (else the result alone has it);
 - ``report.txt``: the report as it was written then;
@@ -15,20 +16,16 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import platform
-import sys
 import tempfile
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-import numpy as np
-
 from .. import _core
-from .._version import __version__
 from ..io.atomic_write import check_format, whole_file
 from ..io.file_format import MOST_BYTES, FileFormatError, check_sum, checksum, read_json, received
+from ..io.made_with import code_text, code_to_install, platform_facts
 from . import result_file
 
 if TYPE_CHECKING:
@@ -41,7 +38,6 @@ __all__ = [
     "MANIFEST",
     "Capsule",
     "is_capsule",
-    "platform_facts",
     "read",
     "run_again",
     "write",
@@ -73,19 +69,6 @@ class Capsule:
     report: str | None
 
 
-def platform_facts() -> dict[str, str]:
-    """Return versions and platform of this process, as far as bits can depend on them."""
-    return {
-        "birm3d": __version__,
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-        "system": platform.system(),
-        "release": platform.release(),
-        "machine": platform.machine(),
-        "byte_order": sys.byteorder,
-    }
-
-
 def run_again(scene: Scene, steps: int | None) -> _core.Simulation:
     """Return the finished run of a scene, or the run after so many steps where it was not over."""
     core = scene.start()
@@ -112,8 +95,8 @@ def write(result: RunAnalysis, report: str | None, path: str | Path) -> None:
         if found != result.state_hash:
             raise ValueError(
                 f"result must run again to the same bits to become a capsule, got state {found:016x} after "
-                f"{result.state_hash:016x} (result of birm3d {result.version}, this is {__version__}); "
-                "Result.save() keeps it as it is"
+                f"{result.state_hash:016x} (result of {code_text(result.made_with)}; this is "
+                f"{code_text(platform_facts())}); Result.save() keeps it as it is"
             )
         members = _members(result, report)
         document = json.loads(json.dumps(_manifest(result, members), allow_nan=False))
@@ -169,8 +152,9 @@ def _readme(result: RunAnalysis, has_vehicle: bool) -> str:
             "",
             'Run it again:    birm3d rerun FILE        (or in Python: birm3d.rerun("FILE"))',
             f"It ended in the state {result.state_hash:016x}. The same bits give the same state.",
+            f"Other bits: install the code that wrote this. {code_to_install(platform_facts())}.",
             "",
-            f"{MANIFEST}: versions, platform, state hash, metrics (SI, degrees), checksums. JSON.",
+            f"{MANIFEST}: versions, source, platform, state hash, metrics (SI, degrees), checksums. JSON.",
             f"{_RESULT}: scene, settings, histories. numpy.load(), or birm3d.load().",
             vehicle,
             f"{_REPORT}: what was computed and what was left out.",

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from ..io.made_with import code_text
 from ..vehicle.unit_shapes import unit_shapes
 from .frames import Frames, frame_times
 from .record import RunRecord
@@ -46,7 +47,7 @@ def capture(result: RunRecord, frames: int | Sequence[float] | npt.NDArray[np.fl
         raise ValueError(
             f"frames need a scene that runs the same way again: the result ended in state "
             f"{result.state_hash:016x}, its scene now in {core.state_hash:016x} "
-            f"(result of birm3d {result.version})"
+            f"(result of {code_text(result.made_with)})"
         )
     for unit, nodes in enumerate(rest):  # rows that the clock's rounding puts after the last step
         taken[unit][k:] = before[unit] - nodes

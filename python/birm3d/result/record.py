@@ -14,6 +14,7 @@ from .._version import __version__
 from ..base.arguments import checked
 from ..base.checks import index as place
 from ..base.frozen_mapping import FrozenMapping
+from ..io.made_with import platform_facts
 from ..scene.scene import Scene
 from .frames import Frames, pose
 from .stored import Stored, StoredHistory
@@ -56,7 +57,7 @@ class RunRecord:
         units: tuple[UnitResult, ...],
         event: _core.Event | Stored | None,
         frames: Frames | None = None,
-        version: str = __version__,
+        made_with: Mapping[str, str] | None = None,
         saved_metrics: Mapping[str, float] | None = None,
     ) -> None:
         self.scene = scene
@@ -69,11 +70,24 @@ class RunRecord:
         self.peak_deflection = units[0].peak_deflection
         self.final_velocity = units[0].final_velocity
         self.frames = frames
-        self.version = version
         self._history = history
         self._units = units
         self.saved_metrics = saved_metrics  # of a file, which a later version may compute in another way
         self._event = event  # None of a file of version 0.1.0
+        self._made_with = made_with  # of a file; None: this process
+
+    @cached_property
+    def made_with(self) -> Mapping[str, str]:
+        """Versions, source and platform that computed it; of a file, as far as that says.
+
+        ``source`` is a hash of the sources of the package. ``commit`` is there where the build knew it.
+        """
+        return FrozenMapping(platform_facts() if self._made_with is None else self._made_with)
+
+    @property
+    def version(self) -> str:
+        """Of the package that computed it."""
+        return __version__ if self._made_with is None else self._made_with["birm3d"]
 
     @property
     def has_left(self) -> bool:

@@ -54,8 +54,10 @@ class Result(RunAnalysis):
         Shell nodes in body axes (k, 3), truss deflections (k,) at the end and their peaks [m].
     frames : Frames or None
         Places of the shell nodes over time, see :meth:`with_frames`.
+    made_with : mapping of str to str
+        Versions, source and platform that computed the result; of a file, as far as that says.
     version : str
-        Of the package that made the result.
+        Of the package that computed the result.
 
     Notes
     -----

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import json
 import math
-import platform
 from collections.abc import Mapping
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -82,12 +81,7 @@ def write(result: RunAnalysis, report: str | None, stream: IO[bytes]) -> None:
     header = {
         "format": _FORMAT,
         "format_version": FORMAT_VERSION,
-        "made_with": {
-            "birm3d": result.version,
-            "python": platform.python_version(),
-            "numpy": np.__version__,
-            "machine": platform.machine(),
-        },
+        "made_with": dict(result.made_with),
         "scene": scene,
         "history": history,
         "units": units,
@@ -157,7 +151,7 @@ def _parts_of_result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray
         ),
         event=None if event is None else Stored(_values(event, arrays)),
         frames=frames,
-        version=header["made_with"]["birm3d"],
+        made_with=header["made_with"],
         saved_metrics=header["metrics"],
     )
 

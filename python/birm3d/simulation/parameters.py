@@ -10,6 +10,11 @@ name                            value
 ``settings.<field>``            a field of :class:`birm3d.Settings`, as ``settings.tolerance``
 ``vehicle.gvw``                 mass [kg], see :meth:`birm3d.Vehicle.with_gvw`
 ``vehicle.mass_center_height``  above the ground at rest [m]
+``vehicle.length`` ...          sizes as :meth:`birm3d.Vehicle.scaled_to` has them (``width``,
+                                ``height``, ``wheelbase``), at the same mass [m]; a height of the mass
+                                centre that was asked for stays
+``vehicle.yaw_inertia`` ...     see :meth:`birm3d.Vehicle.with_inertia` (``roll_inertia``,
+                                ``pitch_inertia``) [kg m^2]
 ``vehicle.mesh_density``        relative number of shell elements
 ``vehicle.rate_sensitivity``    [s/m], see :meth:`birm3d.Vehicle.with_rate_sensitivity`
 ``vehicle.indentation_length``  see :meth:`birm3d.Vehicle.with_indentation_length`
@@ -36,7 +41,6 @@ from functools import lru_cache
 from typing import Any
 
 from ..barrier.kinds import KINDS
-from ..base import checks
 from ..base.arguments import checked
 from ..base.deprecated import warn_renamed
 from ..base.near_names import near_names
@@ -44,10 +48,9 @@ from ..scene.scene import APPROACH, Scene
 from ..scene.settings import Settings
 from ..units import quantity_in, si
 from ..vehicle.class_scatter import joined
-from ..vehicle.combination_recipe import CombinationRecipe
 from ..vehicle.vehicle import TRUSS_LAW, Vehicle
-from ..vehicle.zone import positive
 from .simulation import Simulation
+from .vehicle_numbers import NUMBERS, numbers_of, resized, vehicle_value, with_numbers
 from .zone_numbers import PER_AREA, changed_zone, unit_of_number, zone_numbers, zone_value
 
 __all__ = [
@@ -60,7 +63,6 @@ __all__ = [
     "varied_scene",
 ]
 
-_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "indentation_length")
 _UNITS: dict[str, str] = {
     "impact_speed": "m/s",
     "impact_angle": "deg",
@@ -82,10 +84,7 @@ _UNITS: dict[str, str] = {
         for field in dataclasses.fields(Settings)
         if "unit" in field.metadata
     },
-    "vehicle.gvw": "kg",
-    "vehicle.mass_center_height": "m",
-    "vehicle.rate_sensitivity": "s/m",
-    "vehicle.indentation_length": "m",
+    **{f"vehicle.{name}": number.unit for name, number in NUMBERS.items() if number.unit},
 }
 
 
@@ -153,12 +152,7 @@ def _names(scene: Scene) -> tuple[str, ...]:
         names += [f"barrier.{name}" for name in fields if not (edgeless and name == "edge_radius")]
     names += [f"settings.{f.name}" for f in dataclasses.fields(Settings)]
     vehicle = scene.vehicle
-    no_effect = set() if vehicle.has_file else {"mesh_density"}
-    if not vehicle.mass_center_height > 0.0:  # on the ground, as of laboratories: no ratio leads away
-        no_effect.add("mass_center_height")
-    names += [f"vehicle.{name}" for name in _VEHICLE if name not in no_effect]
-    if vehicle.slides:
-        names.append("vehicle.bed_fixings")
+    names += [f"vehicle.{name}" for name in numbers_of(vehicle)]
     if not vehicle.zones and vehicle.joint is None:
         names += [f"truss.{name}" for name in TRUSS_LAW]
     for zone in vehicle.zones_met:
@@ -198,10 +192,10 @@ def value_of(simulation: Simulation, name: str) -> Any:
         return getattr(scene if rest in _OF_THE_VEHICLE else scene.settings, rest)
     if group == "truss":
         return scene.vehicle.truss_law[rest]
-    if group == "scatter" or name == "vehicle.bed_fixings":
+    if group == "scatter":
         return 1.0
     if group == "vehicle":
-        return scene.vehicle.mass if rest == "gvw" else getattr(scene.vehicle, rest)
+        return vehicle_value(scene.vehicle, rest)
     zone, number = rest.rsplit(".", 1)
     return zone_value(scene.vehicle.zones[zone], number)
 
@@ -284,40 +278,21 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
     if groups.keys().isdisjoint(("zone", "scatter", "truss", "vehicle")):
         return vehicle
     numbers = groups.get("vehicle", {})
-    recipe = vehicle._description
+    recipe = resized(vehicle, numbers)  # first, as laws go with the size
     zones: dict[str, dict[str, Any]] = {}
     for rest, value in groups.get("zone", {}).items():
         zone, number = rest.rsplit(".", 1)
         zones.setdefault(zone, {})[number] = value
-    changed = {name: changed_zone(vehicle.zones[name], new) for name, new in zones.items()}
+    changed = {name: changed_zone(recipe.zones[name], new) for name, new in zones.items()}
     for name, factor in groups.get("scatter", {}).items():
         for zone in _scattered(vehicle)[name]:
-            now = changed.get(zone, vehicle.zones[zone])
+            now = changed.get(zone, recipe.zones[zone])
             changed[zone] = now.with_springs(factor) if name == "springs" else now.scaled(factor)
     if changed:
         recipe = recipe.with_zones(changed)
     if "truss" in groups:
         recipe = recipe.with_truss_law(**groups["truss"])
-    if "mesh_density" in numbers:
-        recipe = recipe.with_mesh_density(checks.number("mesh_density", numbers["mesh_density"]))
-    if "rate_sensitivity" in numbers:
-        recipe = recipe.each(
-            rate_sensitivity=si("rate_sensitivity", numbers["rate_sensitivity"], "time per length")
-        )
-    if "indentation_length" in numbers:
-        length = si("indentation_length", numbers["indentation_length"], "length")
-        recipe = recipe.each(indentation_length=length)
-    if "gvw" in numbers:
-        recipe = recipe.with_mass(positive("gvw", si("gvw", numbers["gvw"], "mass")))
-    if "bed_fixings" in numbers:
-        assert isinstance(recipe, CombinationRecipe)  # the parameter is of vehicles that slide, see _names
-        recipe = recipe.with_fixings(checks.number("bed_fixings", numbers["bed_fixings"]))
-    if "mass_center_height" in numbers:
-        height = numbers["mass_center_height"]
-        recipe = recipe.with_mass_center_height(
-            None if height is None else si("mass_center_height", height, "length")
-        )
-    return vehicle._changed(recipe)
+    return vehicle._changed(with_numbers(recipe, numbers))
 
 
 def _unknown(scene: Scene, name: str) -> ValueError:

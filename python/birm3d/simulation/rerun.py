@@ -9,6 +9,7 @@ from typing import Any
 
 from ..base.frozen_mapping import FrozenMapping
 from ..io.file_format import reads
+from ..io.made_with import code_to_install, facts_text, platform_facts
 from ..result import capsule
 from ..result.result import Result, load
 
@@ -28,7 +29,7 @@ class Rerun:
     expected_hash, found_hash : int
         State at the end, then and today.
     made_with : mapping of str to str
-        Versions and platform that wrote the file, as far as it says.
+        Versions, source and platform that wrote the file, as far as it says.
     made_here : mapping of str to str
         The same of this process.
     differences : mapping of str to (float or None, float or None)
@@ -52,9 +53,11 @@ class Rerun:
         word = "the same bits" if self.same else "OTHER BITS"
         lines = [
             f"{word}: state {self.expected_hash:016x} then, {self.found_hash:016x} now",
-            f"  written by  {_facts(self.made_with)}",
-            f"  run now by  {_facts(self.made_here)}",
+            f"  written by  {facts_text(self.made_with)}",
+            f"  run now by  {facts_text(self.made_here)}",
         ]
+        if not self.same:
+            lines.append(f"  {self._why}")
         if self.same and self.differences:
             lines.append("  from the same bits this version computes some metrics in another way:")
         elif self.differences:
@@ -63,6 +66,14 @@ class Rerun:
             lines.append("  all metrics are equal")
         lines += [f"    {name}: {_difference(*values)}" for name, values in self.differences.items()]
         return "\n".join(lines)
+
+    @property
+    def _why(self) -> str:
+        """What may give the same bits."""
+        then, now = (facts.get("source") for facts in (self.made_with, self.made_here))
+        if then is not None and then == now:
+            return "the source is the same: compilers or machines differ"
+        return f"for the same bits install what wrote it: {code_to_install(self.made_with)}"
 
     __str__ = summary
 
@@ -93,19 +104,19 @@ def rerun(path: str | Path) -> Rerun:
         If the file can not be read, is damaged or was changed, or a newer version made it.
     """
     path = Path(path)
-    made_with: Mapping[str, str] = {}
+    then = load(path)
+    made_with = then.made_with
     with path.open("rb") as stream:
         if capsule.is_capsule(stream):
             made_with = capsule.read(stream, path).manifest["made_with"]
-    then = load(path)
     core = capsule.run_again(then.scene, capsule.steps_of(then))
     now = Result._of(then.scene, core, 0.0)
     return Rerun(
         result=now,
         expected_hash=then.state_hash,
         found_hash=now.state_hash,
-        made_with=FrozenMapping(dict(made_with or {"birm3d": then.version})),
-        made_here=FrozenMapping(capsule.platform_facts()),
+        made_with=FrozenMapping(made_with),
+        made_here=FrozenMapping(platform_facts()),
         differences=FrozenMapping(_differences(then, now)),
     )
 
@@ -116,12 +127,6 @@ def _differences(then: Result, now: Result) -> dict[str, tuple[float | None, flo
     names = [name for name in {**before, **today} if name not in _WALL_TIME]
     pairs = {name: (before.get(name), today.get(name)) for name in names}
     return {name: pair for name, pair in pairs.items() if pair[0] != pair[1]}
-
-
-def _facts(facts: Mapping[str, str]) -> str:
-    known = [f"{name} {facts[name]}" for name in ("birm3d", "python", "numpy") if name in facts]
-    place = " ".join(facts[name] for name in ("system", "machine") if name in facts)
-    return ", ".join([*known, place] if place else known)
 
 
 def _difference(then: float | None, now: float | None) -> str:

@@ -13,6 +13,7 @@ from ..base.checks import shown
 from ..simulation.parameters import parameter_names, value_of
 from ..simulation.simulation import Simulation
 from ..vehicle.class_scatter import QUANTITIES, joined
+from ..vehicle.scaling import SIZES
 from ..vehicle.vehicle import Vehicle
 from ..vehicle.zone import Zone
 
@@ -37,7 +38,13 @@ _PARAMETERS = {
     "tire_friction": "settings.mu_tire",
     "edge_flank": "settings.edge_flank_factor",
     "bed_fixings": "vehicle.bed_fixings",
+    **{name: f"vehicle.{name}" for name in (*SIZES, "roll_inertia", "yaw_inertia")},
 }
+
+# Dimensions of Sobol's sequence, in the order of the quantities. Those left out go along with earlier ones
+# where there are few points. Between these 16, correlations are at most 0.34 at 32 points, as between the
+# first ten.
+_DIMENSIONS = (*range(10), 13, 16, 27, 28, 32, 60)
 
 
 def check_draws(name: str, n: int) -> int:
@@ -60,8 +67,8 @@ def draws(power: int) -> Mapping[str, Floats]:
     from scipy.stats.qmc import Sobol
 
     # Not scrambled, so that they are the same everywhere; in the middles of their cells, never 0 or 1.
-    points = Sobol(len(QUANTITIES), scramble=False).random_base2(power) + 0.5 ** (power + 1)
-    return dict(zip(QUANTITIES, ndtri(points).T, strict=True))
+    points = Sobol(_DIMENSIONS[-1] + 1, scramble=False).random_base2(power) + 0.5 ** (power + 1)
+    return dict(zip(QUANTITIES, ndtri(points[:, _DIMENSIONS]).T, strict=True))
 
 
 def parameter_of(quantity: str) -> str:

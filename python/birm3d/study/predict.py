@@ -188,7 +188,8 @@ def predict(
 ) -> Prediction:
     """Run a scene with what is not known of a vehicle drawn as its class scatters.
 
-    Drawn are forces of front, side and corner, height of the mass centre, friction and tyres. Each is
+    Drawn are forces of front, side and corner, height of the mass centre, friction and tyres. Of a vehicle
+    that :meth:`birm3d.Vehicle.from_facts` made, sizes and inertias that it assumed are drawn, too. Each is
     lognormal, by the blocks ``[[scatter]]`` of the vehicle's file (:attr:`birm3d.Vehicle.scatter`). A median
     there may differ from 1, where the class differs from the vehicle that a preset was fitted to. Then the
     median of a metric is not the value of the scene itself. Laws of zones that differ from the file, as those

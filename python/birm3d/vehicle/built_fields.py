@@ -70,6 +70,7 @@ def _of_file(recipe: VehicleRecipe, shape: VehicleShape | None) -> dict[str, Any
         _shape=shape,
         _mesh_density=recipe.mesh_density,
         _height=recipe.mass_center_height,
+        _spread=recipe.spread,
         _load_density=recipe.load_density,
     )
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from typing import NamedTuple
 
-__all__ = ["QUANTITIES", "STIFFNESSES", "ClassScatter", "joined"]
+__all__ = ["QUANTITIES", "STIFFNESSES", "Z_80", "ClassScatter", "joined"]
+
+Z_80 = 1.2816
+"""Standard deviations from the median of a normal distribution to the ends of its 80 % band."""
 
 STIFFNESSES = ("front", "side", "corner", "tires", "springs")
 """Quantities that are factors on zones: on their forces, or on the stiffness of their wheels' springs."""
@@ -17,8 +20,14 @@ QUANTITIES = (
     "springs",
     "edge_flank",
     "bed_fixings",
+    "length",
+    "width",
+    "height",
+    "wheelbase",
+    "roll_inertia",
+    "yaw_inertia",
 )
-"""What may differ, in the order in which it is drawn."""
+"""What may differ, in the order in which it is drawn. The pitch inertia follows from that in yaw."""
 
 
 class ClassScatter(NamedTuple):

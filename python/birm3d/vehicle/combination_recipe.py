@@ -96,6 +96,10 @@ class CombinationRecipe:
             lambda unit: unit.with_mass_center_height(ratio * float(unit.mass_properties()[0][2]))
         )
 
+    def with_inertia(self, wanted: Mapping[str, float]) -> CombinationRecipe:
+        """Refuse: give the unit that is meant another inertia, and the vehicle this unit."""
+        raise ValueError(f"inertia must be given to one of the units of {self.name!r}, got {dict(wanted)}")
+
     def without_tire_contact(self) -> CombinationRecipe:
         """Return the recipe with tyres that meet the ground only."""
         return self._of_units(lambda unit: unit.without_tire_contact())
@@ -117,9 +121,18 @@ class CombinationRecipe:
     def scaled_to(self, mass: float, factors: Mapping[str, float]) -> CombinationRecipe:
         """Return the recipe of another mass [kg]: masses and places of both units go in proportion."""
         factor = mass / self.mass
-        scaled = self._of_units(lambda unit: unit.scaled_to(factor * unit.mass, factors))
+        return self._scaled(factors, lambda unit: unit.scaled_to(factor * unit.mass, factors))
+
+    def resized(self, factors: Mapping[str, float]) -> CombinationRecipe:
+        """Return the recipe of the same masses, the dimensions of both units times factors."""
+        return self._scaled(factors, lambda unit: unit.resized(factors))
+
+    def _scaled(
+        self, factors: Mapping[str, float], change: Callable[[VehicleRecipe], VehicleRecipe]
+    ) -> CombinationRecipe:
+        """Return the recipe with a change of size of both units, and the joint at its new places."""
         times = [factors.get(name, 1.0) for name in ("length", "width", "height")]
-        return dataclasses.replace(scaled, joint=self.joint.scaled(times))
+        return dataclasses.replace(self._of_units(change), joint=self.joint.scaled(times))
 
     def _of_units(self, change: Callable[[VehicleRecipe], VehicleRecipe]) -> CombinationRecipe:
         return dataclasses.replace(self, leading=change(self.leading), trailing=change(self.trailing))

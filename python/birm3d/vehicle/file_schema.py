@@ -6,6 +6,7 @@ SI, file axes: x forward, y left, z up, origin on the ground below the middle of
 # Longer than 300 lines: the blocks of one file format, which refer to each other.
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
@@ -14,7 +15,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import AfterValidator, Field, model_validator
 
 from ..io.toml import Strict, reject
-from .class_scatter import STIFFNESSES
+from .class_scatter import STIFFNESSES, Z_80
 from .scaling import SIZES, Extent, Factors, PlaceMap, Scaling, factors_of, scaling_between
 from .skin_mesh import SkinMesh
 from .zone_law import OF_WHEELS, NonNegative, Positive, ZoneLaw
@@ -377,6 +378,12 @@ class Scatter(Block):
         "springs",
         "edge_flank",
         "bed_fixings",
+        "length",
+        "width",
+        "height",
+        "wheelbase",
+        "roll_inertia",
+        "yaw_inertia",
     ]
     zones: tuple[LawName, ...] = ()
     median: Positive = 1.0
@@ -402,6 +409,19 @@ class Assumption(Strict):
     low: float | None = None
     high: float | None = None
     unit: str = ""
+
+    @property
+    def name(self) -> str:
+        """What scene parameters and :class:`Scatter` call the quantity, as "yaw_inertia"."""
+        _, inertia, axis = self.quantity.partition("inertia in ")
+        return f"{axis}_inertia" if inertia else self.quantity
+
+    @property
+    def log_sd(self) -> float | None:
+        """Standard deviation of the logarithm that the band says; ``None``: it has no band."""
+        if self.low is None or self.high is None:
+            return None
+        return round(math.log(self.high / self.low) / (2.0 * Z_80), 9)
 
     def __str__(self) -> str:
         return self.text

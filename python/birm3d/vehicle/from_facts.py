@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ..units import Quantity, si
 from .built_fields import fields_of
+from .class_scatter import QUANTITIES, Z_80
 from .file_schema import Assumption, Scatter, Source
 from .read_recipe import read_preset
 from .recipe import VehicleRecipe
@@ -52,7 +53,7 @@ _HEAVY = {"length": _Law(0.0, 0.10), "width": _Law(0.0, 0.03), "height": _Law(0.
 _WHEELBASE = 0.04
 _HEIGHT_OF_MASS = {False: 0.05, True: 0.10}  # of a mass centre that is not known, by whether it is loaded
 _KNOWN = 0.01  # of one that is given
-_Z = 1.2816  # 80 %, two sides
+_INERTIA = 0.12
 _LARGE = 1000.0  # from here on whole numbers are shown
 
 
@@ -107,7 +108,7 @@ def recipe_of_facts(
     inertia = scaled.inertia.diagonal()
     for axis, value in zip(("roll", "pitch", "yaw"), inertia.tolist(), strict=True):
         why = "by mass and lengths from the solids of the preset"
-        told.append(_assumed(f"inertia in {axis}", value, 0.12, why, "kg m^2"))
+        told.append(_assumed(f"inertia in {axis}", value, _INERTIA, why, "kg m^2"))
     return _finished(scaled, kind, base, tuple(told), spread)
 
 
@@ -128,7 +129,7 @@ def _scaled(
 
 def _assumed(name: str, value: float | None, log_sd: float, why: str, unit: str = "m") -> Assumption:
     assert value is not None
-    low, high = value * math.exp(-_Z * log_sd), value * math.exp(_Z * log_sd)
+    low, high = value * math.exp(-Z_80 * log_sd), value * math.exp(Z_80 * log_sd)
     form = ",.0f" if value >= _LARGE else ".4g"
     text = f"{name} {value:{form}} {unit}, 80 % from {low:{form}} to {high:{form}}: {why}"
     return Assumption(quantity=name, value=value, low=low, high=high, unit=unit, text=text)
@@ -154,12 +155,26 @@ def _finished(
         "description": f"Made from known facts, on the base of the preset {base}.",
         "sources": (source, *file.sources),
         "assumptions": told,
-        "scatter": tuple(_with_height(file, spread)),
+        "scatter": tuple(_scatter(file, told, spread)),
     }
     return dataclasses.replace(recipe, name=name, file=file.changed(changes))
 
 
-def _with_height(file: VehicleFile, spread: float) -> list[Scatter]:
-    kept = [one for one in file.scatter if one.name != "mass_center_height"]
-    height = Scatter(name="mass_center_height", log_sd=spread, source=("facts",), status="estimated")
-    return [*kept, height]
+def _scatter(file: VehicleFile, told: Sequence[Assumption], height: float) -> Iterator[Scatter]:
+    """Yield the scatter of the class, and that of what was assumed in place of a fact.
+
+    Parameters
+    ----------
+    told
+        What was assumed.
+    height
+        Standard deviation of the logarithm of the mass centre's height, drawn where it is known, too.
+    """
+    assumed = {one.name: one.log_sd for one in told if one.name in QUANTITIES}
+    spreads = {**assumed, "mass_center_height": height}
+    yield from (one for one in file.scatter if one.name not in spreads)
+    for name in QUANTITIES:
+        if name in spreads:
+            yield Scatter.model_validate(
+                {"name": name, "log_sd": spreads[name], "source": ("facts",), "status": "estimated"}
+            )

@@ -11,6 +11,7 @@ of that zone's elements. So a truss has one law, and the stiffness of a zone doe
 # Longer than 300 lines: one mesher, from sections to elements.
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -326,15 +327,14 @@ def _check_core(vehicle: VehicleFile, nodes: Floats, quads: Ints, anchors: Float
     if (short := np.flatnonzero((nodes == anchors).all(axis=1))).size:
         at = ", ".join(f"{value:.3f}" for value in nodes[short[0]])
         raise ValueError(f"core: '{vehicle.name}' reaches the exterior at ({at}) m; it must lie inside")
-    for box in vehicle.core:
-        y = box.half_width_m
-        corners = np.array([(a, b, c) for a in box.x_m for b in (-y, y) for c in box.z_m])
-        outside = winding_number(corners, nodes, quads) < 0.5
-        if outside.any():
-            at = ", ".join(f"{value:.3f}" for value in corners[outside][0])
-            raise ValueError(
-                f"core.{box.name}: must lie inside the exterior of '{vehicle.name}', got corner ({at}) m"
-            )
+    sides = [(box.x_m, (-box.half_width_m, box.half_width_m), box.z_m) for box in vehicle.core]
+    corners = np.array([corner for box in sides for corner in itertools.product(*box)])
+    for row in np.flatnonzero(winding_number(corners, nodes, quads) < 0.5):
+        at = ", ".join(f"{value:.3f}" for value in corners[row])
+        name = vehicle.core[row // 8].name  # a box has eight corners
+        raise ValueError(
+            f"core.{name}: must lie inside the exterior of '{vehicle.name}', got corner ({at}) m"
+        )
 
 
 def winding_number(points: Floats, nodes: Floats, quads: Ints) -> Floats:

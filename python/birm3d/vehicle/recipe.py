@@ -18,6 +18,7 @@ import numpy.typing as npt
 from .. import _core
 from ..base.deprecated import warn_renamed
 from ..base.frozen_mapping import FrozenMapping
+from .inertia import spread_factors, spread_inertia
 from .mass_center import stretched_inertia
 from .mass_check import UsualMass
 from .old_keys import OLD_FIELDS
@@ -97,6 +98,9 @@ class VehicleRecipe:
         Of the goods in the load space [kg/m^3]; ``None``: the file's.
     mass_center_height
         Above the ground, as it was asked for [m]; ``None``: that of the solids or arrays.
+    spread
+        Factors of the distances of the mass from its centre, along r, s and t; ``None``: no inertia was asked
+        for.
     tire_contact
         Whether tyres meet barriers.
     rate_sensitivity, indentation_length
@@ -111,6 +115,7 @@ class VehicleRecipe:
     mesh_density: float = 1.0
     load_density: float | None = None
     mass_center_height: float | None = None
+    spread: tuple[float, float, float] | None = None
     tire_contact: bool = True
     rate_sensitivity: float = 0.0
     indentation_length: float = 0.0
@@ -127,7 +132,7 @@ class VehicleRecipe:
         """What mesh and mass properties follow from: all but the name, the laws and the optional physics."""
         return (
             *(id(self.file), id(self.arrays), self.mass, self.mesh_density),
-            *(self.load_density, self.mass_center_height, self.tire_contact),
+            *(self.load_density, self.mass_center_height, self.spread, self.tire_contact),
         )
 
     @property
@@ -154,7 +159,7 @@ class VehicleRecipe:
         if self.mass_center_height is not None:
             inertia = stretched_inertia(inertia, self.mass_center_height / center[2])
             center[2] = self.mass_center_height
-        return center, inertia
+        return center, inertia if self.spread is None else spread_inertia(inertia, self.spread)
 
     # ---- changes: of a vehicle of two units each unit is given its own, see CombinationRecipe --------------
 
@@ -210,6 +215,16 @@ class VehicleRecipe:
             )
         return dataclasses.replace(self, arrays=self.arrays.raised(height), mass_center_height=height)
 
+    def with_inertia(self, wanted: Mapping[str, float]) -> VehicleRecipe:
+        """Return the recipe with other inertias [kg m^2]; see :meth:`birm3d.Vehicle.with_inertia`."""
+        inertia = self.mass_properties()[1]
+        x, y, z = spread_factors(inertia, wanted)
+        if self.arrays is not None:
+            arrays = dataclasses.replace(self.arrays, inertia=spread_inertia(inertia, (x, y, z)))
+            return dataclasses.replace(self, arrays=arrays)
+        now = (1.0, 1.0, 1.0) if self.spread is None else self.spread
+        return dataclasses.replace(self, spread=(x * now[0], y * now[1], z * now[2]))
+
     def without_tire_contact(self) -> VehicleRecipe:
         """Return the recipe with tyres that meet the ground only."""
         arrays = None if self.arrays is None else self.arrays.without_tire_nodes()
@@ -238,21 +253,37 @@ class VehicleRecipe:
 
     def scaled_to(self, mass: float, factors: Mapping[str, float]) -> VehicleRecipe:
         """Return the recipe of another mass [kg], its dimensions times factors; see ``Vehicle.scaled_to``."""
+        scaled = self._scaled(factors, mass, mass)
+        height = self.mass_center_height
+        if height is not None:
+            height *= scaling_between(self._own_file.extent, factors).height(self._own_file.extent)
+        return dataclasses.replace(scaled, mass=mass, mass_center_height=height)
+
+    def resized(self, factors: Mapping[str, float]) -> VehicleRecipe:
+        """Return the recipe of the same mass, structure and load, its dimensions times factors.
+
+        A height of the mass centre that was asked for stays.
+        """
+        file = self._own_file
+        return self._scaled(factors, file.zones_mass, file.gvw_kg)
+
+    @property
+    def _own_file(self) -> VehicleFile:
         if self.file is None:
             raise ValueError(f"scaled_to needs a vehicle that has a file, got {self.name!r} from arrays")
-        file = self.file
+        return self.file
+
+    def _scaled(self, factors: Mapping[str, float], at: float, solids: float) -> VehicleRecipe:
+        """Return the recipe with its file at another size; `at`: mass that zones hold for, of solids [kg]."""
+        file = self._own_file
         scaling = scaling_between(file.extent, factors)
-        laws = file.law_factors(mass, scaling)
-        density, height = self.load_density, self.mass_center_height
+        laws = file.law_factors(at, scaling)
+        fuller = solids / file.gvw_kg / scaling.volume(file.extent)
         return dataclasses.replace(
             self,
-            file=file.scaled_to(mass, scaling),
-            mass=mass,
+            file=file.scaled_to(at, scaling, solids, known=factors),
             zones={name: zone.scaled(*laws[name]) for name, zone in self.zones.items()},
-            load_density=None
-            if density is None
-            else density * (mass / file.gvw_kg / scaling.volume(file.extent)),
-            mass_center_height=None if height is None else scaling.z.stretch(0.0, file.extent.top) * height,
+            load_density=None if self.load_density is None else self.load_density * fuller,
             indentation_length=scaling.indentation(file.extent) * self.indentation_length,
         )
 

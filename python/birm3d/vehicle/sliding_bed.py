@@ -40,10 +40,15 @@ def with_sliding_bed(recipe: VehicleRecipe, slide: Slide | None) -> CombinationR
     Raises
     ------
     ValueError
-        If the vehicle's file names no bed.
+        If the vehicle's file names no bed, or the vehicle was given an inertia of its own.
     """
     if recipe.file is None or recipe.file.bed is None:
         raise ValueError(f"vehicle must have a file with a block 'bed', got {recipe.name!r} without one")
+    if recipe.spread is not None:
+        raise ValueError(
+            f"vehicle must have the inertia of its solids before its bed can slide, got {recipe.name!r} "
+            "after with_inertia(): give the units theirs"
+        )
     bed = recipe.file.bed
     files = (_chassis(recipe.file, bed), _bed(recipe.file, bed))
     masses = _masses(recipe, *files)

@@ -161,8 +161,8 @@ class Vehicle(OldVehicleNames):
         Taken is the preset of the kind whose mass is nearest (:meth:`scaled_to` says what goes with what).
         What is not known is assumed, with a band. Dimensions go with the mass as those of NHTSA's test
         vehicles; those of trucks and buses stay, as their mass is the load's. :attr:`assumptions` says so in
-        words and numbers, and so do the report of a run and the vehicle's file. :attr:`scatter` has the bands
-        that :func:`birm3d.predict` draws from.
+        words and numbers, and so do the report of a run and the vehicle's file. :func:`birm3d.predict` draws
+        from the bands, and :meth:`assumed_distributions` has them for other studies.
 
         Parameters
         ----------
@@ -288,6 +288,24 @@ class Vehicle(OldVehicleNames):
             "inertia": inertia, "use_densities": use_densities, "zones": zones, "core": core, "name": name,
         }  # fmt: skip
         return build(recipe_of_mesh(MeshFacts.given(path, mass, like, others), mesh_density))
+
+    def assumed_distributions(self) -> dict[str, Any]:
+        """Return the distributions of what was assumed of the vehicle, for :func:`birm3d.monte_carlo`.
+
+        Each is lognormal. Its median is the vehicle's number, and 80 % of it lie within the band that
+        :attr:`assumptions` says. The pitch inertia follows from the yaw inertia, as both are mostly due to
+        the mass along the vehicle. What is known is not among them. :func:`birm3d.predict` draws the same by
+        itself, beside the forces of the class.
+
+        Returns
+        -------
+        dict of str to frozen distribution of scipy.stats
+            Parameter, as ``"vehicle.length"`` (see :mod:`birm3d.scene_parameters`) -> its distribution, SI;
+            empty where nothing was assumed.
+        """
+        from .assumed import assumed_distributions
+
+        return assumed_distributions(self)
 
     def plot(self) -> Figure:
         """Return a figure of what the vehicle is made of, from four sides.

@@ -45,8 +45,9 @@ class Changes(Strict):
 
     gvw_kg: see :meth:`birm3d.Vehicle.with_gvw`; load_density_kg_per_m3: of its goods. mesh_density: number of
     elements relative to element_size_m. mass_center_height_m: in place of that of the solids, see
-    :meth:`birm3d.Vehicle.with_mass_center_height`. tire_contact: whether tyres meet barriers. zone: laws in
-    place of those of the file.
+    :meth:`birm3d.Vehicle.with_mass_center_height`. mass_spread: factors of distances from the mass centre
+    along x, y and z, see :meth:`birm3d.Vehicle.with_inertia`. tire_contact: whether tyres meet barriers.
+    zone: laws in place of those of the file.
     """
 
     name: Annotated[str, Field(min_length=1)] | None = None
@@ -54,6 +55,7 @@ class Changes(Strict):
     load_density_kg_per_m3: Positive | None = None
     mesh_density: Positive = 1.0
     mass_center_height_m: Positive | None = None
+    mass_spread: tuple[Positive, Positive, Positive] | None = None
     rate_sensitivity_s_per_m: Annotated[float, Field(ge=0.0)] = 0.0
     indentation_length_m: Annotated[float, Field(ge=0.0)] | None = None
     tire_contact: bool = True

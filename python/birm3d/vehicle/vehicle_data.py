@@ -67,6 +67,7 @@ class VehicleData(VehicleFields):
             mesh_density=self._mesh_density,
             load_density=self._load_density,
             mass_center_height=self._height,
+            spread=self._spread,
             tire_contact=bool((self.wheel_of_node >= 0).any()),
             rate_sensitivity=self.rate_sensitivity,
             indentation_length=self.indentation_length,
@@ -110,6 +111,21 @@ class VehicleData(VehicleFields):
     def track(self) -> float | None:
         """Between the middles of the first axle's outermost wheels [m]; ``None`` where it has not two."""
         return self._dimensions.track
+
+    @property
+    def roll_inertia(self) -> float:
+        """About the axis r (forward) through the mass centre [kg m^2]."""
+        return float(self.inertia[0, 0])
+
+    @property
+    def pitch_inertia(self) -> float:
+        """About the axis s (to the left) through the mass centre [kg m^2]."""
+        return float(self.inertia[1, 1])
+
+    @property
+    def yaw_inertia(self) -> float:
+        """About the axis t (up) through the mass centre [kg m^2]."""
+        return float(self.inertia[2, 2])
 
     @cached_property
     def zones_met(self) -> tuple[str, ...]:

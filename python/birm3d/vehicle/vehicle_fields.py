@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ..base.frozen_mapping import FrozenMapping
 from .class_scatter import ClassScatter
+from .inertia import INERTIAS
 from .recipe import sums_of
 from .title import title_of_name, without_mass
 from .zone import Zone
@@ -57,6 +58,7 @@ class VehicleFields:
     _shape: VehicleShape | None = dataclasses.field(default=None, compare=False, metadata=NOT_STORED)
     _mesh_density: float = 1.0
     _height: float | None = None  # of the mass centre, where one was asked for, in place of the solids' [m]
+    _spread: tuple[float, float, float] | None = None  # see VehicleRecipe
     _load_density: float | None = None  # of the goods in the load space, where not the file's [kg/m^3]
     # Fields as they were made, which tell what dataclasses.replace() was given; and the names of those.
     _built: Mapping[str, Any] | None = dataclasses.field(default=None, compare=False, metadata=NOT_STORED)
@@ -120,13 +122,25 @@ class VehicleFields:
     @property
     def scatter(self) -> Mapping[str, ClassScatter]:
         """How vehicles of its class differ from it, by the quantity; empty where its file does not say."""
-        rows = () if self._file is None else self._file.scatter
+        if self._file is None:
+            return FrozenMapping({})
+        known = {one.name for one in self._file.assumptions} - {one.name for one in self.assumptions}
+        rows = (row for row in self._file.scatter if row.name not in known)
         return FrozenMapping({row.name: ClassScatter(row.median, row.log_sd, row.zones) for row in rows})
 
     @property
     def assumptions(self) -> tuple[Assumption, ...]:
-        """What was assumed of a vehicle made :meth:`from known facts <birm3d.Vehicle.from_facts>`."""
-        return () if self._file is None else self._file.assumptions
+        """What was assumed of a vehicle made :meth:`from known facts <birm3d.Vehicle.from_facts>`.
+
+        What was given to it since is assumed no more: sizes by ``scaled_to``, ``with_mass_center_height``,
+        ``with_inertia``.
+        """
+        told = () if self._file is None else self._file.assumptions
+        known = {
+            "mass_center_height": self._height is not None,
+            **dict.fromkeys(INERTIAS, self._spread is not None),
+        }
+        return tuple(one for one in told if not known.get(one.name, False))
 
     @property
     def _strong_height(self) -> float | None:

@@ -12,7 +12,7 @@ silently: unknown keys, NaN and text where a number belongs are errors.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
@@ -240,12 +240,16 @@ class VehicleFile(Strict):
         return {name: one._replace(stress=strength * one.stress) for name, one in factors.items()}
 
     def scaled_to(
-        self, mass: float, scaling: Scaling = _SAME_SIZE, solids: float | None = None
+        self,
+        mass: float,
+        scaling: Scaling = _SAME_SIZE,
+        solids: float | None = None,
+        known: Collection[str] = (),
     ) -> VehicleFile:
         """Return the file of a vehicle of another mass [kg] and size (:mod:`birm3d.vehicle.scaling`).
 
         Masses of the solids go in proportion, or to another sum [kg] than the zones. Targets are left out, as
-        they are not met any more.
+        they are not met any more; so is what was assumed of dimensions that are known now, and their scatter.
         """
         solids = mass if solids is None else solids
         to = Resize(scaling, self.extent, solids / self.gvw_kg)
@@ -254,6 +258,8 @@ class VehicleFile(Strict):
             "gvw_kg": solids,
             "zones_at_kg": mass,
             "targets": (),
+            "scatter": tuple(one for one in self.scatter if one.name not in known),
+            "assumptions": tuple(one for one in self.assumptions if one.quantity not in known),
             "solids": tuple(to.solid(solid) for solid in self.solids),
             "wheels": tuple(to.wheel(wheel) for wheel in self.wheels),
             "points": tuple(to.point(point) for point in self.points),

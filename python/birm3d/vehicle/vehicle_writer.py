@@ -13,7 +13,7 @@ from ..io.toml import plain
 from .file_recipe import changes_of
 
 if TYPE_CHECKING:
-    from .variants import VehicleVariants
+    from .mass_variants import MassVariants
     from .vehicle_fields import VehicleFields
 
 __all__ = ["check_savable", "save_vehicle"]
@@ -24,7 +24,7 @@ _HEAD = (
 )
 
 
-def save_vehicle(vehicle: VehicleVariants, path: str | Path, read: Callable[[Path], VehicleVariants]) -> None:
+def save_vehicle(vehicle: MassVariants, path: str | Path, read: Callable[[Path], MassVariants]) -> None:
     """Write a vehicle to a file that `read` gives back; see :meth:`birm3d.Vehicle.save`."""
     import tomlkit
 
@@ -56,7 +56,7 @@ def _with_lines(value: Any) -> Any:
     return tomlkit.string(value, multiline=True) if isinstance(value, str) and "\n" in value else value
 
 
-def check_savable(vehicle: VehicleVariants) -> None:
+def check_savable(vehicle: MassVariants) -> None:
     """Refuse a vehicle that has no file.
 
     Raises
@@ -81,7 +81,7 @@ def _of_one_unit(vehicle: VehicleFields) -> dict[str, Any]:
     return {**content, "changes": changes} if changes else content
 
 
-def _of_two_units(vehicle: VehicleVariants) -> dict[str, Any]:
+def _of_two_units(vehicle: MassVariants) -> dict[str, Any]:
     joint = vehicle.joint
     assert joint is not None  # else there is one unit
     units = [_of_one_unit(unit) for unit in vehicle.units]
@@ -111,7 +111,7 @@ def _of_two_units(vehicle: VehicleVariants) -> dict[str, Any]:
     }
 
 
-def _differences(vehicle: VehicleVariants, other: VehicleVariants) -> list[str]:
+def _differences(vehicle: MassVariants, other: MassVariants) -> list[str]:
     """Names of the fields in which two vehicles differ; of units where there are two."""
     if vehicle == other:
         return []

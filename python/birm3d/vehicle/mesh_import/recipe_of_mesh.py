@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..file_schema import Assumption, Source
+from ..inertia import INERTIAS
 from ..recipe import VehicleRecipe
 from ..skin_mesh import PANELS, SkinMesh, table_of
 from ..vehicle_file import VehicleFile
@@ -184,7 +185,7 @@ def _finished(
         "description": f"Skin from the mesh {facts.path.name}; what a mesh does not say, from {file.title}.",
         "sources": tuple(sources.values()),
         "exterior": exterior.changed({"source": ("mesh",)}),
-        "assumptions": (*_kept(file, facts), *(Assumption(quantity="mesh", text=text) for text in told)),
+        **_still_assumed(file, facts, told),
         "targets": (),
         "overhang": None,  # the mesh has the underside
     }
@@ -196,14 +197,17 @@ def _as_data(file: VehicleFile) -> dict[str, Any]:
     return file.model_dump(by_alias=True)
 
 
-def _kept(file: VehicleFile, facts: MeshFacts) -> list[Assumption]:
-    """Return the assumptions of the class that the facts of the user leave standing."""
-    gone = set()
-    if facts.inertia is not None:
-        gone |= {"inertia in roll", "inertia in pitch", "inertia in yaw"}
+def _still_assumed(file: VehicleFile, facts: MeshFacts, told: list[str]) -> dict[str, Any]:
+    """Return the assumptions and the scatter of the class that the facts of the user leave standing."""
+    known = set() if facts.inertia is None else set(INERTIAS)
     if facts.center_of_mass is not None:
-        gone.add("mass_center_height")
-    return [one for one in file.assumptions if one.quantity not in gone]
+        known.add("mass_center_height")
+    kept = [one for one in file.assumptions if one.name not in known]
+    gone = {one.name for one in file.assumptions} & known
+    return {
+        "assumptions": (*kept, *(Assumption(quantity="mesh", text=text) for text in told)),
+        "scatter": tuple(one for one in file.scatter if one.name not in gone),
+    }
 
 
 def _given(facts: MeshFacts) -> tuple[Source, ...]:
@@ -230,7 +234,9 @@ def _with_mass_properties(recipe: VehicleRecipe, facts: MeshFacts) -> VehicleRec
     file = file.changed({"solids": (solid_of(facts.mass, center, inertia),), "gvw_kg": facts.mass})
     if file.zones_at_kg is None:
         file = file.changed({"zones_at_kg": file_of(recipe).gvw_kg})
-    return dataclasses.replace(recipe, file=file, mass=facts.mass, mass_center_height=None, load_density=None)
+    return dataclasses.replace(
+        recipe, file=file, mass=facts.mass, mass_center_height=None, spread=None, load_density=None
+    )
 
 
 def _name_of(path: Path) -> str:
