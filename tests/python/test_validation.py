@@ -17,10 +17,11 @@ sys.path[:0] = [str(FOLDER), str(TESTS / "bench")]
 
 import page  # noqa: E402
 from finite_element import runs  # noqa: E402
-from fit_finite_element import predicted  # noqa: E402
+from finite_element_fit import predicted  # noqa: E402
+from finite_element_skin import SKINS, zones  # noqa: E402
 
 # Least numbers of rows within their marks, of three a run: crush, force and yaw.
-WITHIN = {("N", "fitted"): 19, ("N", "left out"): 13, ("S", "fitted"): 18, ("S", "left out"): 11}
+WITHIN = {("N", "fitted"): 19, ("N", "left out"): 17, ("S", "fitted"): 18, ("S", "left out"): 14}
 
 
 def table(key: str) -> dict[tuple[str, str], dict[str, str]]:
@@ -73,6 +74,38 @@ def test_fitted_files_name_their_fit(key: str) -> None:
     text = (DATA / f"fitted_{key}.toml").read_text(encoding="utf-8")
     assert "when each run is left out in turn" in text
     assert "to-be-fitted" not in text
+
+
+@pytest.mark.parametrize("key", ["n", "s"])
+def test_no_number_of_a_fit_runs_away(key: str) -> None:
+    """Once a stress was 1.6 times the greatest of the fits without a run: a poor minimum."""
+    rows = {row["name"]: row for row in page.rows_of(f"{key}_numbers")}
+    for unknown in SKINS[key].unknowns:
+        value, low, high = (float(rows[unknown.name][name]) for name in ("value", "low", "high"))
+        assert low <= value <= high
+        assert 1.01 * unknown.low < value < 0.99 * unknown.high, unknown.name
+        assert abs(unknown.departure(value)) < 2.5, unknown.name
+
+
+@pytest.mark.parametrize("key", ["n", "s"])
+def test_numbers_of_the_page_are_those_of_the_file(key: str) -> None:
+    values = {row["name"]: float(row["value"]) for row in page.rows_of(f"{key}_numbers")}
+    vehicle = Vehicle.from_file(DATA / f"fitted_{key}.toml")
+    for name, law in zones(SKINS[key], values).items():
+        saved = vehicle.zones[name]
+        for number in ("f_max", "tail_depth", "tail_slope", "elastic_recovery", "k_unloading"):
+            assert getattr(saved, number) == pytest.approx(getattr(law, number), rel=1e-3)
+        for there, here in zip(saved.envelope or (), law.envelope or (), strict=True):
+            assert there == pytest.approx(here, rel=1e-3)
+
+
+def test_less_yaw_at_the_oblique_wall_costs_other_marks() -> None:
+    """What finite_element.md says: yaw held to 1.25 degrees meets fewer marks of N than held to 10."""
+    rows = [row for row in page.rows_of("yaw") if row["runs"] == "all"]
+    loose, *_, firm = sorted(rows, key=lambda row: -float(row["sigma"]))
+    assert abs(page.errors(firm)[2]) < abs(page.errors(loose)[2])
+    met = [int(row["crush_within"]) + int(row["force_within"]) for row in (loose, firm)]
+    assert met[1] < met[0]
 
 
 def test_page_is_what_the_results_say() -> None:

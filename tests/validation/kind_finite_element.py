@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import birm3d
 from comparison import RESULTS, Row, about
 from finite_element import DATA, VEHICLES, Run, runs
-from fit_finite_element import predicted
+from finite_element_fit import predicted
 from page import YAW_MARK, rows_of
 
 NAME = "finite_element"
