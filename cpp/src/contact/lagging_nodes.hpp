@@ -19,8 +19,8 @@ bool lags_behind(double gap_as_step_began);
 // The gap to use in this step. Of a node that lags inside the plane: only the plane's advance within the step.
 double without_lag(const NearObstacle& near, const Vec3& node, const Vec3& normal, double gap);
 
-// Takes the lag out of the gaps to the nearest surfaces, and sets ContactBlock::lags. Nodes that did not lag in the last step, in
-// blocks that did not hang over a top and that no indentation has left within the step, stay as they are.
+// Takes the lag out of the gaps to the nearest surfaces, and sets ContactBlock::lags. Other nodes stay as they
+// are: those that did not lag in the last step, in blocks that did not hang over a top and that no indentation has left.
 void keep_lags(const ContactPass& pass, ContactBlock& block);
 
 }  // namespace birm3d

@@ -56,9 +56,7 @@ class PlanterKind(RoundedBlock):
         if self.count > MOST_ELEMENTS:
             raise ValueError(f"count must be at most {MOST_ELEMENTS:,} planters, got {self.count}")
         if self.count > 1 and not self.spacing > self.length:
-            raise ValueError(
-                f"spacing must be above the length ({self.length:g} m), got {self.spacing}"
-            )
+            raise ValueError(f"spacing must be above the length ({self.length:g} m), got {self.spacing}")
         self.check_edges()
         blocks = [self.block_elements(self.height, along, i) for i, along in enumerate(self.places())]
         return [block[0] for block in blocks] + [part for block in blocks for part in block[1:]]
