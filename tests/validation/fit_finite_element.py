@@ -1,6 +1,6 @@
 """Fits the skins of the finite-element vehicles to all their given runs, and leaves each run out in turn.
 
-    python tests/validation/fit_finite_element.py n    # writes fitted_n.toml and results/finite_element_n.csv
+    python tests/validation/fit_finite_element.py n    # writes fitted_n.toml, two tables in results
     python tests/validation/fit_finite_element.py s
     python tests/validation/page.py                    # finite_element.md from the results
 
