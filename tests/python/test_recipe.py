@@ -28,6 +28,7 @@ OTHERS: dict[str, Callable[[VehicleRecipe], Any]] = {
     "mesh_density": lambda r: 0.13,
     "load_density": lambda r: 500.0,
     "mass_center_height": lambda r: 1.05,
+    "spread": lambda r: (1.1, 1.0, 0.95),
     "tire_contact": lambda r: False,
     "rate_sensitivity": lambda r: 0.05,
     "indentation_length": lambda r: 0.4,
@@ -89,6 +90,7 @@ def test_the_methods_of_a_vehicle_are_changes_of_its_recipe() -> None:
         ):
             assert build(changed) == made
             assert made != vehicle
+    assert build(CAR.recipe.with_inertia({"yaw_inertia": 3e3})) == CAR.with_inertia(yaw_inertia="3000 kg m^2")
 
 
 def test_several_changes_build_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -103,11 +105,12 @@ def test_several_changes_build_once(monkeypatch: pytest.MonkeyPatch) -> None:
     simulation = Simulation(TRUCK, Barrier.bollards(), 12.0)
     monkeypatch.setattr(Vehicle, "__post_init__", counted)
     numbers = {"gvw": 7000.0, "rate_sensitivity": 0.05, "indentation_length": 0.4, "mass_center_height": 1.05}
+    numbers |= {"length": 7.0, "yaw_inertia": 3e4}
     changes = {"zone.bumper.scale": 1.2} | {f"vehicle.{name}": value for name, value in numbers.items()}
     vehicle = varied(simulation, changes).scene.vehicle
     assert len(made) == 1
-    found = (vehicle.mass, vehicle.rate_sensitivity, vehicle.indentation_length, vehicle.mass_center_height)
-    assert found == tuple(numbers.values())
+    found = {name: getattr(vehicle, "mass" if name == "gvw" else name) for name in numbers}
+    assert found == pytest.approx(numbers, rel=1e-12)
 
 
 def test_a_combination_keeps_its_height_when_it_is_loaded() -> None:

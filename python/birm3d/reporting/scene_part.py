@@ -179,7 +179,8 @@ def _facts(unit: Vehicle) -> Iterator[tuple[str, str, str]]:
     source = solids if unit._height is None else "set by the user"
     yield "mass centre above the ground", f"{unit.mass_center_height:.3f} m", source
     inertia = ", ".join(f"{value:,.0f}" for value in unit.inertia.diagonal())
-    yield "roll, pitch, yaw inertia", f"{inertia} kg m²", solids
+    source = solids if unit._spread is None else "set by the user"
+    yield "roll, pitch, yaw inertia", f"{inertia} kg m²", source
     parts = f"{unit.n_nodes:,} nodes, {unit.n_trusses:,} trusses, {len(unit.wheels)} wheels"
     yield "skin", parts, "meshed from the outline" if file is not None else _NO_SOURCE
 

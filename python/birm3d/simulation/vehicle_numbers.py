@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from ..base import checks
-from ..units import quantity_in, si
+from ..units import si
 from ..vehicle.combination_recipe import CombinationRecipe
 from ..vehicle.inertia import INERTIAS, UNIT
 from ..vehicle.recipe import VehicleRecipe
@@ -122,7 +122,5 @@ def with_numbers(recipe: Recipe, numbers: Mapping[str, Any]) -> Recipe:
     for name, number in NUMBERS.items():
         if name in numbers and number.changed is not None:
             recipe = number.changed(recipe, numbers[name])
-    quantity = quantity_in(UNIT)
-    assert quantity is not None  # units knows it
-    wanted = {name: si(name, numbers[name], quantity) for name in INERTIAS if name in numbers}
+    wanted = {name: si(name, numbers[name], "inertia") for name in INERTIAS if name in numbers}
     return recipe.with_inertia(wanted) if wanted else recipe
