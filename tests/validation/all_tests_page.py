@@ -35,7 +35,8 @@ dash in place of a unit stands for ratios, counts, and yes (1) or no (0).
 - check: nothing was measured, or the mark is wide on one side by its nature. The row is in no count.
 
 Figures whose source is not at hand are printed apart, at the end of a kind, and are in no count.
-Details of the fits: [vehicles N and S](finite_element.md), [finite-element truck](truck.md).
+[Every fit and its command](fits.md). Details: [vehicles N and S](finite_element.md),
+[finite-element truck](truck.md), [corners](corners.md), [posts](posts.md).
 """
 
 
