@@ -14,7 +14,8 @@ import pytest
 from birm3d import Vehicle, scenes
 from birm3d.reference import NhtsaTest, nhtsa_tests
 
-BENCH = Path(__file__).resolve().parents[1] / "bench"
+VALIDATION = Path(__file__).resolve().parents[1] / "validation"
+BENCH = VALIDATION.with_name("bench")
 SAVED = BENCH / "results/predictions/nhtsa_frontal.csv"
 TESTS = nhtsa_tests()
 
@@ -59,7 +60,7 @@ def test_fronts_meet_what_they_were_fitted_to(number: str, way: float, tolerance
 @pytest.fixture(scope="module")
 def fit_sides() -> Iterator[ModuleType]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(BENCH)
+        patch.syspath_prepend(VALIDATION)
         import fit_sides
 
         yield fit_sides

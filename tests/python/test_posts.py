@@ -15,8 +15,9 @@ from birm3d import Barrier, Result, Settings, Simulation, Vehicle
 TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / "validation"), str(TESTS / "bench")]
 
+import post_ratios  # noqa: E402
 import posts  # noqa: E402
-from posts import impulse  # noqa: E402
+from post_runs import impulse  # noqa: E402
 
 FITTED = TESTS / "data/finite_element"
 SPEED = {"fitted_n": 13.4, "fitted_truck": 22.35, "passenger_car": 15.6}
@@ -150,6 +151,39 @@ def test_page_of_posts_is_what_is_computed(name: str, diameter: float, share: fl
     found, kept = posts.load(name, diameter, share), rows[name, diameter, share]
     for what in ("travel", "peak_force", "force_50ms", "forward"):
         assert getattr(found, what) == pytest.approx(float(kept[what]), rel=0.01)
+
+
+def test_page_of_posts_is_made_of_its_tables() -> None:
+    text = (posts.FOLDER / "posts.md").read_text(encoding="utf-8")
+    section = post_ratios.section(post_ratios.read_ratios(), post_ratios.read_parts())
+    assert text.endswith(f"\n{section.rstrip()}\n")
+
+
+@pytest.mark.parametrize("name", ["fitted_truck", "van_3500"])
+def test_the_greatest_ratio_is_what_is_computed(name: str) -> None:
+    """Of the vehicles that are beyond the mark, with tyres and without."""
+    who = posts.vehicle(name)
+    for tires, car in ((True, who), (False, who.without_tire_contact())):
+        kept = post_ratios.greatest(post_ratios.read_ratios(), name, tires)
+        found = post_ratios.ratio(name, car, tires, kept.offset_share)
+        assert found.ratio == pytest.approx(kept.ratio, rel=0.01)
+        assert found.momentum == pytest.approx(kept.momentum, rel=1e-3)
+
+
+def test_posts_before_fronts_take_less_than_the_mark_sideways() -> None:
+    """All vehicles but two, of which the page says why."""
+    rows = post_ratios.read_ratios()
+    beyond = {row.vehicle for row in rows if row.tires and row.ratio >= post_ratios.MARK}
+    assert beyond == {"fitted_truck", "van_3500"}
+    assert {row.vehicle for row in rows} == {"fitted_n", "fitted_s", "fitted_truck", *Vehicle.presets()}
+
+
+def test_zones_of_the_truck_add_up_to_what_they_do_together() -> None:
+    """Trusses are independent of each other: a truck that keeps its speed has the sum of its zones."""
+    *zones, whole = (part for part in post_ratios.read_parts() if part.kind == "zone")
+    for way in ("forward", "left"):
+        together = sum(getattr(part, way) for part in zones)
+        assert together == pytest.approx(getattr(whole, way), rel=0.005)
 
 
 def test_a_thin_post_meets_no_core_at_56_km_h() -> None:

@@ -38,7 +38,8 @@ No test data: of exit speed and of the tilt of posts that yield no measured valu
 overturning moment at a foot there are finite-element runs only.
 
 Figures whose source is not at hand are printed apart, at the end of a kind, and are in no count.
-Details of the fits: [vehicles N and S](finite_element.md), [finite-element truck](truck.md).
+[Every fit and its command](fits.md). Details: [vehicles N and S](finite_element.md),
+[finite-element truck](truck.md), [corners](corners.md), [posts](posts.md).
 """
 
 

@@ -13,8 +13,8 @@ from stand_in import name_of, stand_in
 
 NAME = "side_pole"
 TITLE = "Rigid pole into the side"
-TEXT = """Vehicles: NHTSA as in `tests/bench/fit_sides.py`, the preset of the class, scaled to the mass of
-the test; the broadside pickup by `with_gvw`, aimed at its mass centre. Marks: 15 % in crush, one standard
+TEXT = """Vehicles: NHTSA as in `tests/validation/fit_sides.py`, the preset of the class, scaled to the mass
+of the test; the broadside pickup by `with_gvw`, aimed at its mass centre. Marks: 15 % in crush, one standard
 deviation of 15 cars (pickups scatter by twice that); 20 % in load and occupant risk of the one broadside
 test.
 

@@ -1,9 +1,9 @@
 """Loads on single posts against diameter and offset: writes posts.md and results/posts.csv.
 
-    python tests/validation/posts.py    # some seconds
+    python tests/validation/posts.py    # half a minute
 
-Head-on, one rigid post, no friction. The site draws both tables. The finite-element figures are those of
-tests/data/finite_element: poles of 0.354 m at 30 mph.
+Head-on, one rigid post, no friction. The site draws the tables but those of post_ratios.py. Figures of finite
+elements are those of tests/data/finite_element: poles of 0.354 m at 30 mph.
 """
 
 from __future__ import annotations
@@ -12,24 +12,17 @@ import csv
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
-from functools import cache
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
-sys.path.insert(0, str(FOLDER.parent / "bench"))
+sys.path[:0] = [str(FOLDER), str(FOLDER.parent / "bench")]
 
-import birm3d  # noqa: E402
-import numpy as np  # noqa: E402
-from finite_element import DATA, POLE_DIAMETER  # noqa: E402
+import post_ratios  # noqa: E402
+from finite_element import POLE_DIAMETER  # noqa: E402
+from post_runs import crash, half_width, impulse, speed, vehicle  # noqa: E402
 
 RESULTS = FOLDER / "results/posts.csv"
-SPEED = {
-    "fitted_n": birm3d.units.mph(30),
-    "fitted_s": birm3d.units.mph(30),
-    "passenger_car": birm3d.units.km_h(56),
-    "pickup": birm3d.units.km_h(56),
-    "fitted_truck": birm3d.units.mph(50),
-}
+VEHICLES = ("fitted_n", "fitted_s", "passenger_car", "pickup", "fitted_truck")
 DIAMETERS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)  # m
 SHARES = (0.0, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0, 1.1, 1.3)  # of the half width
 
@@ -72,46 +65,10 @@ class Load:
         return abs(self.left) / self.forward if self.forward > 1.0 else 0.0
 
 
-@cache
-def vehicle(name: str) -> birm3d.Vehicle:
-    if name.startswith("fitted"):
-        return birm3d.Vehicle.from_file(DATA / f"{name}.toml")
-    return birm3d.Vehicle.preset(name)
-
-
-def half_width(who: birm3d.Vehicle) -> float:
-    """Greatest distance of a node from the plane of symmetry [m]."""
-    return float(who.nodes[:, 1].max())
-
-
-def crash(
-    who: birm3d.Vehicle,
-    speed: float,
-    offset: float,
-    *,
-    diameter: float,
-    height: float = 1.5,
-    friction: float = 0.0,
-    tolerance: float = 1e-3,
-) -> birm3d.Result:
-    """Run a vehicle head-on at one post, whose axis is `offset` to the right of the middle [m]."""
-    post = birm3d.Barrier.bollards(
-        count=1, diameter=diameter, height=height, origin=(0.0, -offset, 0.0), friction=friction
-    )
-    settings = birm3d.Settings(mu_tire=0.0, mu_body=0.0, mu_tire_barrier=0.0, tolerance=tolerance)
-    return birm3d.Simulation(who, post, speed, duration=0.25, settings=settings).run()
-
-
-def impulse(result: birm3d.Result) -> np.ndarray:
-    """Impulse on the post, forward and to the vehicle's left [N s]."""
-    (on_post,) = result.element_loads
-    return np.asarray(on_post.force[1:, :2].sum(0) * result.scene.settings.output_interval)
-
-
 def load(name: str, diameter: float, share: float) -> Load:
     """Run the crash of a vehicle at a post, which stands a share of its half width to the right."""
     who = vehicle(name)
-    result = crash(who, SPEED[name], share * half_width(who), diameter=diameter)
+    result = crash(who, speed(name), share * half_width(who), diameter=diameter)
     forward, left = impulse(result)
     return Load(
         name,
@@ -127,7 +84,7 @@ def load(name: str, diameter: float, share: float) -> Load:
 
 def loads() -> Iterator[Load]:
     """Every crash of the page."""
-    for name in SPEED:
+    for name in VEHICLES:
         for diameter in DIAMETERS:
             yield load(name, diameter, 0.0)
         for share in SHARES:
@@ -147,14 +104,14 @@ def write(found: Sequence[Load]) -> None:
 
 def _table(title: str, heads: Sequence[str], rows: Sequence[Load], text: Callable[[Load], str]) -> str:
     lines = ["", f"**{title}**", "", f"| vehicle | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
-    for name in SPEED:
+    for name in VEHICLES:
         cells = [text(row) for row in rows if row.vehicle == name]
         lines.append(f"| {name} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 
 def page(found: Sequence[Load]) -> str:
-    """The tables, with a row for each vehicle."""
+    """The tables against diameter and offset, with a row for each vehicle."""
     parts = [INTRODUCTION, BY_DIAMETER]
     centered = [row for row in found if row.diameter in DIAMETERS and row.offset_share == 0.0]
     for title, value in (
@@ -175,7 +132,10 @@ def page(found: Sequence[Load]) -> str:
 def main() -> int:
     found = list(loads())
     write(found)
-    (FOLDER / "posts.md").write_text(page(found) + "\n", encoding="utf-8")
+    post_ratios.write(post_ratios.RATIOS, list(post_ratios.ratios()))
+    post_ratios.write(post_ratios.PARTS, list(post_ratios.parts()))
+    rest = post_ratios.section(post_ratios.read_ratios(), post_ratios.read_parts())
+    (FOLDER / "posts.md").write_text(f"{page(found)}\n{rest.rstrip()}\n", encoding="utf-8", newline="\n")
     return 0
 
 

@@ -211,7 +211,8 @@ def small_overlap() -> list[Coverage]:
     """Change of velocity in the small overlap: shares of 150 tests, as normal by their quartiles."""
     runs = []
     for name in kind_small_overlap.VEHICLES:
-        study = birm3d.predict(kind_small_overlap.simulation(name), metrics=["delta_v"]).study
+        crash = kind_small_overlap.simulation(birm3d.Vehicle.preset(name))
+        study = birm3d.predict(crash, metrics=["delta_v"]).study
         for row in range(len(study)):
             runs.append(study.simulation(row).run())
     found = []

@@ -330,6 +330,10 @@ class Barrier(BarrierKind):
     ) -> MeshBarrier:
         """Return a barrier of triangles, met by the paper's vertex-to-face algorithm (Eq. 8-15).
 
+        Triangles draw in no skin beside them. For what is narrower than the vehicle take :meth:`bollards`,
+        :meth:`pole` or :meth:`planter`, or it is driven in to the rigid core: see
+        :class:`birm3d.CoreContactWarning`.
+
         Parameters
         ----------
         vertices

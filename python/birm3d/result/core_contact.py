@@ -10,6 +10,7 @@ import numpy as np
 
 from .. import units
 from ..base.complaints import Complaint
+from ..scene.mesh_check import parts_met
 
 if TYPE_CHECKING:
     from .. import _core
@@ -25,6 +26,10 @@ class CoreContactWarning(UserWarning):
     Behind trusses that have bottomed out nothing is left to crush; a sharp edge can also meet the core
     between trusses. The report says which. Peaks of force and of deceleration are then those of a blow
     between rigid bodies. A structure would go on to crush: travel is too small by what it would have crushed.
+
+    A body of triangles that is narrower than the vehicle draws in no skin beside it, whatever its shape. Few
+    trusses resist it, and it is driven in to the core: travel and force are then too great by far. Posts
+    (poles, bollards) and planters draw in skin.
     """
 
 
@@ -33,16 +38,37 @@ def core_complaints(scene: Scene, statistics: _core.StepStatistics) -> Iterator[
     force = statistics.core_contact_force
     limit = scene.vehicle.mass * units.g(1.0)
     if force > limit:
-        text = partial(_text, scene.vehicle.title, limit, force, statistics.core_contact_time)
+        causes = tuple(_causes(scene))
+        text = partial(_text, scene.vehicle.title, limit, force, statistics.core_contact_time, causes)
         yield Complaint(CoreContactWarning, "core_contact_force", force, text)
 
 
-def _text(title: str, limit: float, force: float, time: float) -> str:
-    return (
+def _text(title: str, limit: float, force: float, time: float, causes: tuple[str, ...]) -> str:
+    found = (
         f"core_contact_force must be at most {1e-3 * limit:,.0f} kN, the vehicle's weight ({title}), got "
         f"{1e-3 * force:,.0f} kN as a mean over 50 ms until {time:.3f} s: the barrier met what "
         "is not crushed, and peaks of force and deceleration are those of a blow between rigid bodies"
     )
+    return ". ".join([found, *(cause[0].upper() + cause[1:] for cause in causes)])
+
+
+def _causes(scene: Scene) -> Iterator[str]:
+    """Yield what about the barrier lets it reach the core, and what helps."""
+    barrier = scene.barrier
+    if barrier is None:
+        return
+    if barrier.cuts_skin:
+        yield "sharp edges of the barrier pass between nodes; rounded ones (edge_radius=0.05) do not"
+    elif not barrier.draws_in_skin:
+        vehicle = scene.vehicle.units[0]
+        low, high = vehicle.skin_bounds
+        widths = [part.width for part in parts_met(scene, vehicle)]
+        if widths and min(widths) < high[1] - low[1]:
+            yield (
+                f"a part of the barrier that is narrower than the vehicle ({min(widths):.3g} m of "
+                f"{high[1] - low[1]:.3g} m) draws in no skin beside it ({barrier.why_no_indentation}) and is "
+                "driven in to the core; bollards, poles and planters draw in skin"
+            )
 
 
 # A truss is bottomed out where its node is as near to its anchor [m].
@@ -78,8 +104,4 @@ def core_lines(result: RunAnalysis) -> list[str]:
     behind = f" behind bottomed-out trusses ({', '.join(zones)})" if zones else " between trusses"
     steps = result.statistics.body_steps
     lines = [f"  the rigid core was met{behind} in {steps:,} steps: loads then are those of rigid bodies"]
-    if result.scene.barrier is not None and result.scene.barrier.cuts_skin:
-        lines.append(
-            "  sharp edges of the barrier pass between nodes; rounded ones (edge_radius=0.05) do not"
-        )
-    return lines
+    return [*lines, *(f"  {cause}" for cause in _causes(result.scene))]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ..vehicle.vehicle import Vehicle
     from .scene import Scene
 
-__all__ = ["CoarseSkinWarning", "coarse_skins", "warn_if_coarse"]
+__all__ = ["CoarseSkinWarning", "coarse_skins", "parts_met", "warn_if_coarse"]
 
 
 class CoarseSkinWarning(UserWarning):
@@ -41,6 +41,17 @@ def warn_if_coarse(scene: Scene) -> None:
         complaint.warn()
 
 
+def parts_met(scene: Scene, unit: Vehicle) -> list[SeenPart]:
+    """Return the parts of the barrier that have ends, seen along the path, and stand as high as the skin."""
+    seen = [] if scene.barrier is None else scene.barrier.seen_parts(math.radians(scene.impact_angle))
+    parts = [part for part in seen if part.width < math.inf]
+    if not parts:
+        return []
+    low, high = unit.skin_bounds
+    bottom, top = low[2] + unit.mass_center_height, high[2] + unit.mass_center_height
+    return [part for part in parts if part.low <= top and part.high >= bottom]
+
+
 def coarse_skins(scene: Scene) -> Iterator[Complaint]:
     """Yield what :func:`warn_if_coarse` warns of."""
     if scene.barrier is None:
@@ -48,15 +59,11 @@ def coarse_skins(scene: Scene) -> Iterator[Complaint]:
     units = scene.vehicle.units
     if scene.barrier.has_posts:
         units = tuple(unit for unit in units if unit.indentation_length == 0.0)
-    parts = [
-        part for part in scene.barrier.seen_parts(math.radians(scene.impact_angle)) if part.width < math.inf
-    ]
-    for unit in units if parts else ():
-        low, high = unit.skin_bounds
-        bottom, top = low[2] + unit.mass_center_height, high[2] + unit.mass_center_height
-        met = [part for part in parts if part.low <= top and part.high >= bottom]
+    for unit in units:
+        met = parts_met(scene, unit)
         if not met:
             continue
+        low, high = unit.skin_bounds
         narrowest = min(met, key=lambda part: part.width)
         # Nothing passes between nodes that is wider than all of the skin: no spacing is asked for at walls.
         if narrowest.width < (high - low).max() and narrowest.width < unit.node_spacing:

@@ -1,6 +1,6 @@
 """The sides of the presets, from NHTSA's oblique pole tests: one factor on their stresses.
 
-    python tests/bench/fit_sides.py [--mesh-density 0.25] [--predict]
+    python tests/validation/fit_sides.py [--mesh-density 0.25] [--predict]
 
 The vehicle goes at 8.9 m/s into a rigid pole of 254 mm that stands beside the driver's head; its axis makes
 75 deg with the path. Of these tests only the greatest static crush is known, to be met by the residual crush,
