@@ -113,7 +113,7 @@ def test_a_stranger_can_open_it(path: Path, result: Result, tmp_path: Path) -> N
     assert manifest["format_version"] == 1
     assert manifest["state_hash"] == f"{result.state_hash:016x}"
     assert manifest["metrics"] == dict(result.metrics)
-    assert {"birm3d", "source", "python", "numpy", "system", "machine"} <= set(manifest["made_with"])
+    assert {"birm3d", "source", "python", "numpy", "system", "machine", "libc"} <= set(manifest["made_with"])
     assert found["report.txt"].decode() == result.report() + "\n"
     (tmp_path / "vehicle.toml").write_bytes(found["vehicle.toml"])
     assert Vehicle.from_file(tmp_path / "vehicle.toml") == result.scene.vehicle
@@ -178,7 +178,7 @@ def test_other_bits_are_told(
     text = again.summary()
     assert "OTHER BITS" in text
     assert f"written by  birm3d {birm3d.__version__}, source {shortened(SOURCE.digest)}" in text
-    assert "the source is the same: compilers or machines differ" in text
+    assert "the source is the same: compiler, C library or machine differ" in text
     assert "-5.00e-01" in text
     assert command("rerun", str(path)) == 1
     assert f"{result.state_hash:016x}" in capsys.readouterr().out

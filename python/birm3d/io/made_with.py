@@ -15,14 +15,19 @@ __all__ = ["code_text", "code_to_install", "facts_text", "platform_facts"]
 
 
 def platform_facts() -> dict[str, str]:
-    """Return versions, source and platform of this process; ``commit`` only where the build knew it."""
+    """Return versions, source and platform of this process; ``commit`` only where the build knew it.
+
+    The core takes pow, hypot and atan2 from the C library. Where that does not say its version, the system's
+    stands for it.
+    """
+    library = " ".join(filter(None, platform.libc_ver()))
     return {
         "birm3d": __version__,
         **installed_source().facts,
         "python": platform.python_version(),
         "numpy": np.__version__,
         "system": platform.system(),
-        "release": platform.release(),
+        "libc": library or f"{platform.system()} {platform.release()}",
         "machine": platform.machine(),
         "byte_order": sys.byteorder,
     }
@@ -34,9 +39,10 @@ def code_text(facts: Mapping[str, str]) -> str:
 
 
 def facts_text(facts: Mapping[str, str]) -> str:
-    """Return what made a result as one line: code, Python, NumPy and machine."""
+    """Return what made a result as one line: code, Python, NumPy, machine and C library."""
     place = " ".join(facts[name] for name in ("system", "machine") if name in facts)
-    return ", ".join(filter(None, (code_text(facts), _listed(facts, "python", "numpy"), place)))
+    rest = (_listed(facts, "python", "numpy"), place, facts.get("libc", ""))
+    return ", ".join(filter(None, (code_text(facts), *rest)))
 
 
 def _listed(facts: Mapping[str, str], *names: str) -> str:
