@@ -147,7 +147,7 @@ def rewritten(path: Path, change: Callable[[dict[str, object]], None]) -> Path:
 @pytest.mark.parametrize(
     ("change", "parts"),
     [
-        (lambda h: h.update(format_version=99), ["format_version must be 2 or 3", "99", "newer birm3d"]),
+        (lambda h: h.update(format_version=99), ["format_version must be 2 or 3 or 4", "99", "newer birm3d"]),
         (lambda h: h.update(format="other"), ["format must be 'birm3d result'", "other"]),
         (lambda h: h["scene"]["$Scene"].update(color=1), ["Scene has no 'color'", "newer"]),
         (lambda h: h["scene"]["$Scene"].update(barrier={"$Path": {}}), ["kind must be one of", "$Path"]),

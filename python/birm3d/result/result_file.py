@@ -108,7 +108,7 @@ def read(stream: IO[bytes], path: Path) -> tuple[dict[str, Any], str | None]:
     if "header" not in arrays:
         raise FileFormatError.at(path, None, "must have a header in JSON, got none")
     header = read_json(path, str(arrays.pop("header")))
-    check_format(path, header, _FORMAT, 2, FORMAT_VERSION)
+    check_format(path, header, _FORMAT, 2, 3, FORMAT_VERSION)
     with reading(path, "must be a complete result"):
         parts = _parts_of_result(header, arrays)
         found = header.pop("checksum", None)
