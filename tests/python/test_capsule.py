@@ -178,7 +178,7 @@ def test_other_bits_are_told(
     text = again.summary()
     assert "OTHER BITS" in text
     assert f"written by  birm3d {birm3d.__version__}, source {shortened(SOURCE.digest)}" in text
-    assert "the source is the same: compiler, C library or machine differ" in text
+    assert "the source is the same: compare compiler, C library, NumPy, Python and machine" in text
     assert "-5.00e-01" in text
     assert command("rerun", str(path)) == 1
     assert f"{result.state_hash:016x}" in capsys.readouterr().out

@@ -349,7 +349,7 @@ def test_given_tests_are_computed_by_this_version(page: Page, result: Result) ->
     judged = {row[0]: row[3:6] for row in rows if row[2] == "class or penetration"}
     assert judged["RSA surface-mount bollards"][0::2] == ["–", "not published"]
     assert judged["DSC720-1M, fixed bollard"][0::2] == ["P1, at most 0.5 m", "right"]
-    assert "class or penetration as in 2 of 5 tests (WRONG: " in glance
+    assert "class or penetration computed as published in 2 of 5 tests (WRONG: " in glance
 
 
 def test_penetration_beside_the_published_one_is_part_of_the_verdict(page: Page, result: Result) -> None:

@@ -27,16 +27,16 @@ _DRAWS = 16
 _OF_FORCE = ("height", "direction")  # where and in which direction the greatest 50-ms force acts
 
 _BLOWS = (
-    "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes: the upper "
-    "ends of the bands of peak and equivalent static force rest on that blow and are too high."
+    "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes. The design "
+    "values of peak and equivalent static force rest on that blow and are too high."
 )
 _BLOWS_OF_PEAKS = (
-    "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes: the upper "
-    "ends of the bands of peak force rest on that blow and are too high."
+    "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes. The design "
+    "values of peak force rest on that blow and are too high."
 )
 _BELOW = (
-    "On {elements}, {values} of this vehicle {verb} below the band, which is unsafe: most vehicles of the "
-    "class ask for more. The design value is the upper end of the band."
+    "On {elements}, {values} of this vehicle {verb} below the band: do not design with it. Most vehicles "
+    "of the class ask for more. The design value is the upper end of the band."
 )
 _ABOVE = (
     "On {elements}, {values} of this vehicle {verb} above the band: most vehicles of the class ask for less. "

@@ -79,7 +79,7 @@ def design_load(
 
     For each element: impulse, peak force (CFC 60), greatest 50-ms mean force with its height, design moment
     at the foot, and the equivalent static force. With several scenes each value is the greatest of all, and
-    the table names the scene that it comes from.
+    the table names the scene that the value of this vehicle comes from.
 
     The equivalent static force is that of a system with one degree of freedom under the unfiltered load
     (Biggs, Introduction to Structural Dynamics, 1964). At ductility 1 it is m w^2 max|u|, the peak force

@@ -89,7 +89,8 @@ def _of_other_periods(load: DesignLoad) -> Iterator[str]:
         times = force / load.governing.equivalent_static_force
         yield (
             f"With natural periods from {_PERIODS[0]:g} to {_PERIODS[1]:g} s, {load.governing.name} carries "
-            f"up to {times:.2f} times this equivalent static force (at {period:.2g} s)."
+            f"up to {times:.2f} times the equivalent static force of this vehicle (at {period:.2g} s). "
+            "Take the same factor on the design value."
         )
         if force > _MOST_OF_ONE_PULSE * load.governing.peak_force:
             yield _ADDED

@@ -41,8 +41,8 @@ Floats = npt.NDArray[np.float64]
 _DESIGN = (
     "The first number of each load and height is the design value: the upper end of the 80 % band over "
     "{draws} vehicles of the class in the governing scenes, or this vehicle's own value if that is greater. "
-    "One vehicle in ten asks for more. No partial factor is in it. In square brackets: this vehicle; the "
-    "band. Direction and DLF are those of this vehicle. "
+    "About one vehicle of the class in ten exceeds the upper end. Errors of the model and partial factors "
+    "are not in it. In square brackets: this vehicle; the band. Direction and DLF are those of this vehicle. "
 )
 _NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "direction", "moment", "equivalent_static_force")
 

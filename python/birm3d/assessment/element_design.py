@@ -131,8 +131,9 @@ class ElementDesign:
     def design(self) -> Mapping[str, float]:
         """Design value of each enveloped value and of the height, SI: the upper end of its band.
 
-        The value itself where that is greater, or where there is no band. One vehicle of the class in ten
-        asks for more. No partial factor is in it. Of the impulse the size counts, with its sign.
+        The value itself where that is greater, or where there is no band: check ``draws`` of the design load.
+        About one vehicle of the class in ten exceeds the upper end. Errors of the model and partial factors
+        are not in it. Of the impulse the size counts, with its sign.
         """
         ends = {name: (getattr(self, name), *self.band.get(name, ())) for name in DESIGNED}
         return {name: float(max(values, key=abs)) for name, values in ends.items()}

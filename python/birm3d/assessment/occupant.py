@@ -91,8 +91,8 @@ def occupant_risk(
     ------
     ValueError
         If there is neither a result nor channels, or both. If a channel is missing, measures something else
-        or does not hold time zero. If it changes the velocity by more than 0.3 m/s before time zero, nothing
-        is hit, or the record ends while the vehicle is still pushed.
+        or does not hold time zero. If a channel changes the velocity by more than 0.3 m/s before time zero.
+        If nothing is hit. If the record ends while the vehicle is still pushed.
     """
     channels = {"x": x, "y": y, "z": z, "yaw_rate": yaw_rate}
     if edition not in (1998, 2010):

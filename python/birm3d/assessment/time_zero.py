@@ -10,7 +10,8 @@ from ..signals.channel_checks import onset_of
 __all__ = ["require_rest_before"]
 
 # Greatest change of velocity before time zero [m/s]: 2.5 % of the greatest OIV that MASH allows. A pulse of
-# 10 g reaches it in 3 ms, within which films show first contact. Noise of 0.05 g over 0.1 s is a sixth of it.
+# 10 g reaches it in 3 ms, and films show the first contact no more exactly. Noise of 0.05 g over 0.1 s is a
+# sixth of it.
 _LIMIT = 0.3
 # An onset is blurred by this: it is found in means over 1 ms [s].
 _BLUR = 1e-3

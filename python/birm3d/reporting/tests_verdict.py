@@ -15,7 +15,7 @@ __all__ = ["answers_of_tests", "distance_past"]
 _ALL_ALIKE = 4  # vehicle, barrier, speed, angle
 _KINDS = {"limit": "at most ", "dynamic": "dynamic "}
 _RIGID = (
-    "posts of these scenes are rigid, real ones and their foundations give way: rely on no computed "
+    "the posts of these scenes are rigid, and real ones and their foundations give way; rely on no computed "
     "penetration"
 )
 
@@ -44,7 +44,7 @@ def _verdicts(tests: Sequence[Compared]) -> Iterator[str]:
 
 def _counted(what: str, tests: Sequence[Compared], wrong: Sequence[Compared]) -> str:
     names = f" (WRONG: {'; '.join(one.test.name for one in wrong)})" if wrong else ""
-    return f"{what} as in {len(tests) - len(wrong)} of {len(tests)} tests{names}"
+    return f"{what} computed as published in {len(tests) - len(wrong)} of {len(tests)} tests{names}"
 
 
 def _values(tests: Sequence[Compared]) -> Iterator[str]:

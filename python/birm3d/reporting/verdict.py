@@ -115,6 +115,7 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
             "What does its foundation have to carry?",
             f"{alone}{row.name}: {'design with an ' if row.band else ''}equivalent static force "
             f"{row.design['equivalent_static_force'] / 1e3:,.0f} kN at {row.design['height']:.2f} m, "
+            f"moment at the foot {row.design['moment'] / 1e3:,.0f} kN m, "
             f"{made_by(case.design_loads)}{band_of_design(row)}",
         )
     yield "Would occupants be at risk?", _risk_line(case)
@@ -187,7 +188,7 @@ def _load_band(case: Case) -> str:
     most = [f"{max(own[name], high[name]) / 1e3:,.0f}" for name in (force, moment)]
     return (
         f"; 80 % of the class: {band_of(case.bands, force, 1e3, ',.0f')} kN on the most loaded element; "
-        f"design with {most[0]} kN and {most[1]} kN m"
+        f"upper ends {most[0]} kN and {most[1]} kN m"
     )
 
 

@@ -25,11 +25,11 @@ class CoreContactWarning(UserWarning):
 
     Behind trusses that have bottomed out nothing is left to crush; a sharp edge can also meet the core
     between trusses. The report says which. Peaks of force and of deceleration are then those of a blow
-    between rigid bodies. A structure would go on to crush: travel is too small by what it would have crushed.
+    between rigid bodies. Under a blunt barrier a structure would go on to crush: travel is too small.
 
     A body of triangles that is narrower than the vehicle draws in no skin beside it, whatever its shape. Few
-    trusses resist it, and it is driven in to the core: travel and force are then too great by far. Posts
-    (poles, bollards) and planters draw in skin.
+    trusses resist it, and it is driven in to the core. Beside such a body travel and force are too great.
+    Posts (poles, bollards) and planters draw in skin.
     """
 
 

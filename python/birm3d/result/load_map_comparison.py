@@ -39,12 +39,12 @@ _LONGEST_INTERVAL = 0.1 / 60.0  # s; SAE J211-1 asks for ten times the class in 
 @checked
 @dataclass(frozen=True, eq=False)
 class LoadMapComparison:
-    """Two load maps of one grid, over the time that both have; made by :func:`compare_load_maps`.
+    """Two load maps of one grid, until the same time after first contact; made by :func:`compare_load_maps`.
 
     Attributes
     ----------
     measured, computed : LoadMap
-        Rows of the common time; time zero is the first contact.
+        Rows until the common end; time zero is the first contact.
     """
 
     measured: LoadMap
@@ -143,8 +143,8 @@ def compare_load_maps(
 ) -> LoadMapComparison:
     """Lay a computed load map beside a measured one.
 
-    Both are taken from the first contact on, for as long as both are known. Of a measured one first contact
-    is time zero, and what noise there is before it counts.
+    Both end at the same time after first contact. Of a measured one first contact is time zero. Its rows
+    before that are kept.
 
     Parameters
     ----------

@@ -72,7 +72,7 @@ class Rerun:
         """What may give the same bits."""
         then, now = (facts.get("source") for facts in (self.made_with, self.made_here))
         if then is not None and then == now:
-            return "the source is the same: compiler, C library or machine differ"
+            return "the source is the same: compare compiler, C library, NumPy, Python and machine"
         return f"for the same bits install what wrote it: {code_to_install(self.made_with)}"
 
     __str__ = summary

@@ -41,9 +41,9 @@ _PARAMETERS = {
     **{name: f"vehicle.{name}" for name in (*SIZES, "roll_inertia", "yaw_inertia")},
 }
 
-# Dimensions of Sobol's sequence, in the order of the quantities. Those left out go along with earlier ones
-# where there are few points. Between these 16, correlations are at most 0.34 at 32 points, as between the
-# first ten.
+# Dimensions of Sobol's sequence, in the order of the quantities. Those left out are correlated with earlier
+# ones where there are few points. Between these 16, correlations are at most 0.34 at 32 points, as they are
+# between the first ten.
 _DIMENSIONS = (*range(10), 13, 16, 27, 28, 32, 60)
 
 

@@ -169,10 +169,11 @@ class MassVariants(VehicleData):
         Parameters
         ----------
         roll_inertia
-            About the axis forward [kg m^2]. ``None``: it stays.
+            About the axis forward [kg m^2]. ``None``: it changes only with the parts that the others move.
         pitch_inertia, yaw_inertia
             About the axis to the left, and upwards [kg m^2]. Where one is ``None``, it follows from the
-            other: both are mostly due to the mass along the vehicle.
+            other: both are mostly due to the mass along the vehicle. With a roll inertia alone they change by
+            the parts that it moves.
 
         Raises
         ------

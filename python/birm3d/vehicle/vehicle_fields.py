@@ -133,7 +133,7 @@ class VehicleFields:
         """What was assumed of a vehicle made :meth:`from known facts <birm3d.Vehicle.from_facts>`.
 
         What was given to it since is assumed no more: sizes by ``scaled_to``, ``with_mass_center_height``,
-        ``with_inertia``.
+        ``with_inertia``. One inertia that is given settles all three: the others follow from it.
         """
         told = () if self._file is None else self._file.assumptions
         known = {
