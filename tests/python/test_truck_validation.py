@@ -22,7 +22,7 @@ def truck(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 @pytest.fixture
 def page(truck: ModuleType) -> ModuleType:
-    return importlib.import_module("truck_page")
+    return importlib.import_module("truck_tables")
 
 
 def test_solids_meet_the_models_mass_properties(truck: ModuleType) -> None:
@@ -46,13 +46,13 @@ def test_impulses_of_the_runs_are_their_change_of_momentum(truck: ModuleType) ->
     assert truck.runs()["bollards2_50_offset"].posts == (-0.8, 0.4)
 
 
-# What one rigid body can not meet is said in truck.md. It is the travel at the wall at 50 mph, because the
-# bed goes on; the last jam of the row of three; and the frame that bends between two posts.
+# What one rigid body can not meet is said in truck.md. It is the last jam of the row of three, and the frame
+# that bends between two posts.
 @pytest.mark.parametrize(
     ("name", "marks"),
     [
         ("wall00_30", ("travel", "force", "pitch")),
-        ("wall00_50", ("force", "pitch")),
+        ("wall00_50", ("travel", "force", "pitch")),
         ("wall25_50", ("travel", "force", "pitch")),
         ("bollards3_50", ("travel", "sideways", "pitch")),
         ("bollards2_50_offset", ("travel", "force", "pitch")),

@@ -1,11 +1,12 @@
 """A truck's front, fitted to finite-element runs at walls and bollards, and what it then computes of them.
 
-    python tests/validation/fit_truck.py --save           # some minutes
+    python tests/validation/fit_truck.py --save           # ten minutes
     python tests/validation/fit_truck.py --page --save    # from the numbers that were found, seconds
 
-Eleven numbers (truck_front.py) are fitted to five runs together, then each run is left out in turn. The same
-is done with fewer numbers: the errors of the runs left out say what they are worth. The table has the preset
-`cargo_truck` beside, three of whose numbers are fitted to these runs (fit_truck_preset.py).
+Thirteen numbers (truck_front.py) are fitted to five runs together, then each run is left out in turn. The
+same is done with fewer numbers, and with a bed that slides: errors of runs left out say what they are worth.
+Each fit starts from the middle of what is likely, whatever is left out. The page has the preset `cargo_truck`
+beside, from what fit_truck_preset.py saved.
 
 --save writes tests/data/finite_element/truck_fits.csv and fitted_truck.toml, and tests/validation/truck.md.
 """
@@ -15,33 +16,25 @@ from __future__ import annotations
 import argparse
 import csv
 import sys
+import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import birm3d
 import numpy as np
 import numpy.typing as npt
-from birm3d.filters import cfc
 from scipy.optimize import least_squares
-from truck_front import NUMBERS, VARIANTS, Variant, vehicle_with
-from truck_runs import DATA, FITTED, STANDOFF, START, Run, figures, runs, scene, with_loaded_posts
+from truck_front import NUMBERS, VARIANTS, Number, Variant, vehicle_with
+from truck_residuals import smoothed
+from truck_runs import DATA, FITTED, START, Run, runs
+from truck_tables import cells, computed
 
 Floats = npt.NDArray[np.float64]
 
 FITS = DATA / "truck_fits.csv"
-# What the runs' own repeats moved by (shares), and what the load on a post should be met to (N s).
-# Sideways it comes from a frame that bends between two posts, which one rigid body does not have.
-TRAVEL, FORCE, SIDEWAYS, FORWARD = 0.04, 0.05, 20e3, 15e3
-# Force curves count little: they have spikes of an engine that one rigid body can not follow. Of the peak.
-CURVE, POINTS = 0.25, 8.0
-# Where an indentation just reaches a stiff part of the front, loads on a post jump. The place of the jump is
-# not to be believed: residuals at posts are means over these factors on the reach.
-REACHES = (0.95, 1.05)
 # Of the differences that derivatives are made of, in the logarithm: wide enough to see over small jumps.
 STEP = 0.06
-SPREAD = 0.35  # of the logarithm, of further starts about the first
-# What is thought before the fit: the starts, each to a factor of two. A number that no run tells stays there.
-DOUBT = 0.7  # of the logarithm
+STEP_SCALE = 0.35  # of the logarithm
 
 
 @dataclass(frozen=True)
@@ -55,71 +48,75 @@ class Fit:
 
     @property
     def vehicle(self) -> birm3d.Vehicle:
-        return vehicle_with(self.values, birm3d.Vehicle.from_file(START))
+        variant = next(one for one in VARIANTS if one.name == self.variant)
+        return _built(variant, self.values)
 
 
-def residuals(vehicle: birm3d.Vehicle, run: Run) -> Floats:
-    """Computed less the run's, each over its standard deviation."""
-    result = scene(vehicle, run).run()
-    own = figures(result)
-    scalars = [(own.travel / run.travel - 1.0) / TRAVEL, (own.force_50ms / run.force_50ms - 1.0) / FORCE]
-    posts = (own.impulse - run.impulse) / [FORWARD, SIDEWAYS] if run.posts else np.empty((0, 2))
-    time = result.time - STANDOFF / result.velocity[0, 0]
-    filtered = cfc(result.barrier_normal_force, 60, result.scene.settings.output_interval)
-    force = np.interp(run.time, time, filtered, right=0.0)
-    curve = (force - run.force) / (CURVE * run.peak_force) * np.sqrt(POINTS / len(run.time))
-    return np.concatenate([scalars, posts.ravel(), curve])
+def _built(variant: Variant, values: Mapping[str, float]) -> birm3d.Vehicle:
+    vehicle = vehicle_with(values, birm3d.Vehicle.from_file(START))
+    return vehicle.with_sliding_bed() if variant.sliding_bed else vehicle
 
 
-def smoothed(vehicle: birm3d.Vehicle, run: Run) -> Floats:
-    """Residuals, at posts as means over REACHES, with all posts and with those alone that took a load."""
-    if not run.posts:
-        return residuals(vehicle, run)
-    several = [
-        residuals(vehicle.with_indentation_length(vehicle.indentation_length * factor), same)
-        for same in dict.fromkeys((run, with_loaded_posts(run)))
-        for factor in REACHES
-    ]
-    return np.asarray(np.concatenate(several) / np.sqrt(len(several)))
+@dataclass(frozen=True)
+class Residuals:
+    """Residuals of a variant; those of each run are kept, for fits that leave another one out."""
 
+    variant: Variant
+    known: dict[tuple[bytes, str], Floats] = field(default_factory=dict)
 
-def fit(variant: Variant, left_out: str, starts: int, steps: int) -> Fit:
-    """The numbers of least squares to all runs but one, the best of several starts."""
-    base = birm3d.Vehicle.from_file(START)
-    known = [run for name, run in runs().items() if name != left_out]
-    free = [n for n in NUMBERS if n.name not in variant.held and n.name not in variant.same]
-    low, high = (np.log([getattr(n, bound) for n in free]) for bound in ("lower", "upper"))
-    first = np.log([n.start for n in free])
+    @property
+    def free(self) -> list[Number]:
+        bound = (*self.variant.held, *self.variant.same)
+        return [number for number in NUMBERS if number.name not in bound]
 
-    def values(x: Floats) -> dict[str, float]:
-        found = {n.name: float(v) for n, v in zip(free, np.exp(x), strict=True)}
-        found.update(variant.held)
-        found.update({name: found[other] for name, other in variant.same.items()})
+    def values(self, x: Floats) -> dict[str, float]:
+        """All numbers by their names; x are logarithms of the free ones."""
+        found = {n.name: float(v) for n, v in zip(self.free, np.exp(x), strict=True)}
+        found.update(self.variant.held)
+        found.update({name: found[other] for name, other in self.variant.same.items()})
         return found
 
-    def rows(x: Floats) -> Floats:
-        vehicle = vehicle_with(values(x), base)
-        return np.concatenate([(x - first) / DOUBT, *(smoothed(vehicle, run) for run in known)])
+    def of(self, x: Floats, run: Run) -> Floats:
+        key = (x.tobytes(), run.name)
+        if key not in self.known:
+            self.known[key] = smoothed(_built(self.variant, self.values(x)), run)
+        return self.known[key]
 
-    draw = np.random.default_rng(0)
-    found = []
-    for start in range(starts):
-        x = first if start == 0 else first + draw.normal(0.0, SPREAD, len(free))
-        x = np.clip(x, low + 1e-3, high - 1e-3)
-        found.append(
-            least_squares(rows, x, bounds=(low, high), diff_step=STEP, max_nfev=steps, x_scale=SPREAD)
-        )
-    best = min(found, key=lambda one: float(one.cost))
-    return Fit(variant.name, left_out, values(best.x), float(best.cost))
+    def all(self, x: Floats, against: Sequence[Run]) -> Floats:
+        """Those of what is likely, then of the runs."""
+        likely = [(v - np.log(n.start)) / n.doubt for n, v in zip(self.free, x, strict=True)]
+        return np.concatenate([likely, *(self.of(x, run) for run in against)])
+
+
+def fit(residuals: Residuals, left_out: str, steps: int) -> Fit:
+    """The numbers of least squares to all runs but one, from the middle of what is likely."""
+    against = [run for name, run in runs().items() if name != left_out]
+    found = least_squares(
+        lambda x: residuals.all(x, against),
+        np.log([number.start for number in residuals.free]),
+        bounds=np.log([(number.lower, number.upper) for number in residuals.free]).T,
+        diff_step=STEP,
+        max_nfev=steps,
+        x_scale=STEP_SCALE,
+        ftol=3e-3,
+        xtol=2e-3,
+    )
+    return Fit(residuals.variant.name, left_out, residuals.values(found.x), float(found.cost))
 
 
 def all_fits(options: argparse.Namespace) -> list[Fit]:
-    """The fit to all runs, then those of each variant with each run left out."""
-    found = [fit(VARIANTS[0], "", options.starts, options.steps)]
+    """Of each variant the fit to all runs, then those with each run left out; written as they are found."""
+    found = []
     for variant in VARIANTS:
-        for name in runs():
-            found.append(fit(variant, name, options.left_out_starts, options.steps))
-            print(f"{variant.name}, without {name}: cost {found[-1].cost:.1f}", flush=True)
+        residuals = Residuals(variant)
+        for left_out in ("", *runs()):
+            found.append(fit(residuals, left_out, options.steps))
+            print(f"{variant.name}, without {left_out or 'none'}: cost {found[-1].cost:.1f}", flush=True)
+            if options.save:
+                write(found)
+            judged = [runs()[left_out]] if left_out else None
+            for row in computed(found[-1].vehicle, judged):
+                print("   ", *cells(row), sep="  ", flush=True)
     return found
 
 
@@ -150,12 +147,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--starts", type=int, default=4, help="of the fit to all runs")
-    parser.add_argument("--left-out-starts", type=int, default=1, help="of those with a run left out")
-    parser.add_argument("--steps", type=int, default=10, help="of each start")
+    parser.add_argument("--steps", type=int, default=10, help="of each fit")
     parser.add_argument("--page", action="store_true", help="fit nothing: the numbers of truck_fits.csv")
     parser.add_argument("--save", action="store_true", help="write numbers, vehicle and page")
     options = parser.parse_args(arguments)
+    warnings.simplefilter("ignore", birm3d.CoreContactWarning)  # on the way; the page counts it
 
     found = read() if options.page else all_fits(options)
     if options.save:

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import birm3d
 import numpy as np
 from comparison import Row, about
-from truck_page import MARKS, MOMENT, ROLL
 from truck_runs import FITTED, Run, figures, runs, scene
+from truck_tables import MARKS, MOMENT, ROLL
 
 NAME = "finite_element_truck"
 TITLE = "Finite-element truck: walls and bollards"
-TEXT = """Vehicles: `tests/data/finite_element/fitted_truck.toml`, eleven numbers of which are fitted to all
+TEXT = """Vehicles: `tests/data/finite_element/fitted_truck.toml`, thirteen numbers of which are fitted to all
 five runs; and the preset `cargo_truck`, another truck (its mass, height and length are its own). Three
 stresses of its front are fitted to travel and force of the runs (`fit_truck_preset.py`, which leaves
 each run out in turn, too). A run's name says the barrier and the speed in mph: `wall25_50` is a wall at 25

@@ -81,7 +81,7 @@ class Figures:
     ``moment``: greatest 50-ms mean of the overturning moment about the foot of a post or the wall [N m].
     ``up``: impulse of the barrier on the vehicle, upwards [N s]. ``friction``: energy lost by it at the
     barrier, of the kinetic energy at first. ``core_contact``: whether the rigid core met the barrier.
-    ``slip``: greatest of a bed that slides [m].
+    ``slip``: greatest of a bed that slides [m]. ``chassis_travel``: of the first unit's mass centre [m].
     """
 
     travel: float
@@ -95,6 +95,7 @@ class Figures:
     friction: float
     core_contact: bool
     slip: float
+    chassis_travel: float
 
 
 def _numbers(text: str) -> tuple[float, ...]:
@@ -201,6 +202,7 @@ def figures(result: birm3d.Result) -> Figures:
     ]
     force = result.barrier_normal_force
     travel = whole_position(result) - whole_position(result)[0] - crash.standoff
+    place = result.unit(0).position[:, 0]
     return Figures(
         travel=float(travel.max()),
         force_50ms=float(moving_average(force[:, None], 0.05, interval).max()),
@@ -213,4 +215,5 @@ def figures(result: birm3d.Result) -> Figures:
         friction=float(result.energy["barrier_friction"][-1] / result.energy["kinetic"][0]),
         core_contact=result.statistics.body_steps > 0,
         slip=result.metrics.get("bed_slip", 0.0),
+        chassis_travel=float((place - place[0]).max() - crash.standoff),
     )
