@@ -12,7 +12,7 @@ import truck_pair
 import truck_preset_page
 from truck_front import NUMBERS, Number, vehicle_with
 from truck_runs import POST_DIAMETER, START, figures, runs, scene
-from truck_tables import HEAD, Row, cells, computed, count, score, table
+from truck_tables import HEAD, SCORE_HEAD, Row, cells, computed, count, score, table
 
 if TYPE_CHECKING:
     from fit_truck import Fit
@@ -80,12 +80,12 @@ def _left_out(fits: Sequence[Fit]) -> list[str]:
             known.setdefault(one.variant, []).extend(computed(one.vehicle, [runs()[one.left_out]]))
     lines = ["", "## Each run left out in turn", "", LEFT_OUT, ""]
     lines += [*table(HEAD, [cells(row) for row in known[fits[0].variant]]), ""]
+    scores = []
     for one in fits:
         if not one.left_out:
-            fitted = f"fitted to all runs: {count(computed(one.vehicle))}"
-            rows = known[one.variant]
-            lines += [f"- {one.variant}: mean errors {score(rows)}; met: {count(rows)} ({fitted})"]
-    return lines
+            scores.append([one.variant, "left out", *score(known[one.variant])])
+            scores.append([one.variant, "fitted to all", *score(computed(one.vehicle))])
+    return [*lines, *table(("front", "runs", *SCORE_HEAD), scores)]
 
 
 def _numbers(fit: Fit, band: Sequence[Fit]) -> list[str]:

@@ -9,9 +9,8 @@ from truck_runs import runs
 from truck_tables import Row, computed, table
 
 TEXT = """**Two posts at a frame, a small scan.** One number at a time is changed, of the file, at the offset
-pair. The factor on the force at a post's flank, 0.35, is the same for all vehicles: with vehicle N it meets
-the sideways impulse on a pole, 0.13 of the forward one, which a greater factor would miss. So it is not
-varied."""
+pair. The factor on the force at a post's flank is 0.35 for all vehicles, and is not varied. With it vehicle N
+meets the sideways impulse on a pole, 0.13 of the forward one. A greater factor would miss that."""
 
 FACTORS = {
     "rails": (0.5, 2.0, 4.0),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import birm3d
 from fit_truck_preset import NUMBERS, PITCH, by_rule, pitch_on_film, read, stress
 from truck_runs import runs
-from truck_tables import HEAD, Row, cells, computed, count, score, table
+from truck_tables import HEAD, SCORE_HEAD, Row, cells, computed, count, score, table
 
 TEXT = """Another truck: its mass, height and length are its own. Three stresses of its front are fitted to
 travel and force of these runs and to a pitch on film (`fit_truck_preset.py`). So its travel and force here
@@ -33,7 +33,7 @@ def sections() -> list[str]:
         lines += [f"Met: {count(rows)}. Rigid core met: {core} times."]
     rows = _left_out(preset)
     lines += ["", LEFT_OUT, "", *table(HEAD, [cells(row) for row in rows]), ""]
-    lines += [f"Mean errors {score(rows)}; met: {count(rows)}.", "", *_stresses(preset)]
+    lines += [*table(SCORE_HEAD, [score(rows)]), "", *_stresses(preset)]
     return lines
 
 

@@ -94,18 +94,27 @@ def count(rows: Sequence[Row]) -> str:
     return f"{', '.join(parts)}; together {total} of {sum(map(len, counted.values()))}"
 
 
-def score(rows: Sequence[Row]) -> str:
-    """Mean sizes of the errors, and their root mean square over the marks."""
+SCORE_HEAD = (
+    "mean error of travel [%]",
+    "of force [%]",
+    "sideways [kN s]",
+    "of pitch [deg]",
+    "root mean square, in marks",
+    "marks met",
+)
+
+
+def score(rows: Sequence[Row]) -> list[str]:
+    """What SCORE_HEAD names."""
     mean = {name: float(np.mean([abs(row.errors[name]) for row in rows])) for name in MARKS}
-    posts = [row.errors["sideways"] for row in rows if row.run.posts]
-    shares = [
-        row.errors[name] / mark
-        for row in rows
-        for name, mark in MARKS.items()
-        if row.run.posts or name != "sideways"
+    posts = [row for row in rows if row.run.posts]
+    counted = {name: posts if name == "sideways" else rows for name in MARKS}
+    shares = [row.errors[name] / MARKS[name] for name, of in counted.items() for row in of]
+    return [
+        f"{100 * mean['travel']:.0f}",
+        f"{100 * mean['force']:.0f}",
+        f"{1e-3 * float(np.mean([row.errors['sideways'] for row in posts])):.0f}",
+        f"{mean['pitch']:.1f}",
+        f"{float(np.sqrt(np.mean(np.square(shares)))):.2f}",
+        f"{sum(abs(share) <= 1.0 for share in shares)} of {len(shares)}",
     ]
-    return (
-        f"{100 * mean['travel']:.0f} % in travel, {100 * mean['force']:.0f} % in force, "
-        f"{1e-3 * float(np.mean(posts)):.0f} kN s sideways, {mean['pitch']:.1f} deg in pitch; "
-        f"root mean square {float(np.sqrt(np.mean(np.square(shares)))):.2f} marks"
-    )
