@@ -64,21 +64,23 @@ def test_readme_has_rows_of_the_page() -> None:
     names = {all_tests.kind(name).TITLE: name for name in all_tests.KINDS}
     # What is told of exits, rolls, posts and moments: its error, or that there is no test of it.
     for quantity in ("exit angle", "greatest roll", "overturning moment"):
-        assert any(quantity in row and "within the marks; median error" in row for row in rows)
-    (none,) = [row for row in rows if "no test data" in row]
+        assert any(re.search(rf"{quantity} \d+ of \d+.*error", row) for row in rows)
+    (none,) = re.findall(r"\nNot checked, .*", section)
     for quantity in ("exit speed", "tilt of posts", "overturning moment"):
         assert quantity in none
     measured = {row.quantity for name in all_tests.KINDS for row in read(name) if row.role != "check"}
     assert {"exit angle", "greatest roll", "overturning moment"} <= measured
     assert not {"exit speed", "tilt of posts", "post tilt"} & measured
+    assert set(tables.RESERVATIONS) <= {kind for kind, _, _ in tables.TRUST}
     for kind, quantities, role in tables.TRUST:
         for quantity in quantities:
             name = names[kind]
             judged = [r for r in read(name) if r.judged and r.quantity == quantity and r.role == role]
             counted = tables.counts_by_kind()[kind, quantity, role]
-            assert (counted["rows"], counted["within the marks"]) == (
+            assert (counted["rows"], counted["within the marks"], counted["too small"]) == (
                 str(len(judged)),
                 str(sum(r.met for r in judged)),
+                str(sum(abs(r.predicted) < abs(r.measured) for r in judged)),
             )
 
 
@@ -109,6 +111,9 @@ def test_errors_and_marks() -> None:
     limit = Row("a", "b", "penetration at rest, limit", "m", 0.6, -20.0, 0.6, -3.31)
     assert limit.met
     assert limit.error_text == "-3.91 m"
+    above = Row("a", "b", "exit angle, limit", "deg", 1.0, -1.0, 3.0, 6.04)
+    assert not above.met
+    assert above.error_text == "at least +5.0 deg"
 
 
 def test_readme_counts_ratings_as_their_page_does() -> None:

@@ -1,4 +1,4 @@
-"""Every fit has its command on a page, and the corners' numbers are those of the least misfit."""
+"""Every program that fits is on a page, and the corners' numbers are those of the least misfit."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_the_page_lists_every_program_that_fits() -> None:
 
 
 def test_sources_that_the_page_names_are_in_vehicle_files() -> None:
-    text = (FOLDER / "fits.md").read_text(encoding="utf-8").split("## What has no command")[1]
+    text = (FOLDER / "fits.md").read_text(encoding="utf-8").split("## Numbers set by hand")[1]
     files = "\n".join(
         path.read_text(encoding="utf-8") for path in (ROOT / "python/birm3d/data").glob("*.toml")
     )

@@ -137,6 +137,21 @@ def test_both_pages_run_the_same_scenes(module: ModuleType, monkeypatch: pytest.
         assert case.simulation().scene == other.scene
 
 
+def test_notes_have_what_the_page_of_all_tests_has(module: ModuleType) -> None:
+    """Another car stands for TB11 there, and its severity is not the published one."""
+    text = (FOLDER / "ratings.md").read_text(encoding="utf-8")
+    other = (FOLDER / "README.md").read_text(encoding="utf-8")
+    for case in module.CASES:
+        row = _cells(text, case.name)
+        assert row[7] == module.note_of(case)
+        assert ("page of all tests" in row[7]) == (case.name.split(",")[0] in module.REPEATED)
+    note = next(module.note_of(case) for case in module.CASES if case.name.startswith("TB11"))
+    (there,) = [
+        line for line in other.splitlines() if line.startswith("| SWOV TB11 |") and "redirected" in line
+    ]
+    assert f"ASI {there.split('|')[-2].strip()}, class C: **wrong**" in note
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:core_contact_force must be")  # it is part of the dossier
 @pytest.mark.parametrize("place", range(16))

@@ -26,10 +26,13 @@ whether they are the scatter of tests, a bound or a target. An error beyond its 
 Travel is the greatest displacement of the mass centre towards the barrier. Static crush is what is left of
 the crush after the test. Other words are in the [glossary](../../docs/pages/glossary.md).
 
-The first table counts the rows of each quantity within their marks. Its median error is that of magnitudes. A
-dash in place of a unit stands for ratios, counts, and yes (1) or no (0).
+The first table counts the rows of each quantity within their marks, and those whose magnitude is less than
+the measured one. Its median error is that of magnitudes. A dash in place of a unit stands for ratios, counts,
+and yes (1) or no (0). Where a source gives a limit only, the measured value is "at most", and an error above
+it is "at least".
 
-- fitted: the row was used in a fit of this vehicle.
+- fitted: the row was used in a fit of this vehicle. Of a vehicle that is fitted to runs as a whole, all rows
+  of these runs are called so.
 - left out: predicted by a fit to all rows of its vehicle but this one.
 - predicted: no fit has seen the row.
 - check: nothing was measured, or the mark is wide on one side by its nature. The row is in no count.
@@ -38,7 +41,7 @@ No test data: of exit speed and of the tilt of posts that yield no measured valu
 overturning moment at a foot there are finite-element runs only.
 
 Figures whose source is not at hand are printed apart, at the end of a kind, and are in no count.
-[Every fit and its command](fits.md). Details: [vehicles N and S](finite_element.md),
+[Fits, and numbers set by hand](fits.md). Details: [vehicles N and S](finite_element.md),
 [finite-element truck](truck.md), [corners](corners.md), [posts](posts.md).
 """
 
@@ -91,7 +94,16 @@ def median_error(rows: Sequence[Row]) -> tuple[str, str]:
 
 
 def _summary(modules: Mapping[str, ModuleType], tables: Mapping[str, Sequence[Row]]) -> Iterator[str]:
-    head = ("kind", "quantity", "role", "rows", "within the marks", "median error", "unit of the error")
+    head = (
+        "kind",
+        "quantity",
+        "role",
+        "rows",
+        "within the marks",
+        "too small",
+        "median error",
+        "unit of the error",
+    )
     yield _line(head)
     yield _rule(len(head))
     for name, module in modules.items():
@@ -106,7 +118,9 @@ def _summary(modules: Mapping[str, ModuleType], tables: Mapping[str, Sequence[Ro
                 if not chosen:
                     continue
                 met = sum(row.met for row in chosen)
-                yield _line((title, quantity, role, str(len(chosen)), str(met), *median_error(chosen)))
+                small = sum(abs(row.predicted) < abs(row.measured) for row in chosen)
+                counts = (str(len(chosen)), str(met), str(small))
+                yield _line((title, quantity, role, *counts, *median_error(chosen)))
                 title = ""
 
 
@@ -125,9 +139,7 @@ def _worst(tables: Mapping[str, Sequence[Row]], count: int = 20) -> Iterator[str
     yield _line(head)
     yield _rule(len(head))
     for row in worst:
-        measured, predicted = (_number(value, row.unit) for value in (row.measured, row.predicted))
-        told = f"{measured} {_unit(row.unit)}".removesuffix(" -")
-        cells = (row.test, row.vehicle, row.quantity, told, predicted, row.error_text, f"{beyond(row):.1f}")
+        cells = (*_compared(row), row.error_text, f"{beyond(row):.1f}")
         yield _line(cells)
 
 
@@ -136,15 +148,19 @@ def _rows(rows: Sequence[Row]) -> list[str]:
 
 
 def _table(rows: Sequence[Row]) -> list[str]:
-    head = ("test", "vehicle", "quantity", "measured", "predicted", "error", "")
+    head = ("test", "vehicle", "quantity", "measured", "predicted", "error", "role")
     lines = [_line(head), _rule(len(head))]
     for row in rows:
-        measured, predicted = (_number(value, row.unit) for value in (row.measured, row.predicted))
-        told = f"{measured} {_unit(row.unit)}".removesuffix(" -")
-        role = "" if row.role == "predicted" else row.role
         mark = row.error_text if row.met else f"**{row.error_text}**"
-        lines.append(_line((row.test, row.vehicle, row.quantity, told, predicted, mark, role)))
+        lines.append(_line((*_compared(row), mark, row.role)))
     return lines
+
+
+def _compared(row: Row) -> tuple[str, ...]:
+    """Test, vehicle and quantity of a row, what was measured with its unit, and what was predicted."""
+    measured, predicted = (_number(value, row.unit) for value in (row.measured, row.predicted))
+    told = f"{'at most ' if row.is_limit else ''}{measured} {_unit(row.unit)}".removesuffix(" -")
+    return row.test, row.vehicle, row.quantity, told, predicted
 
 
 def _computed() -> list[str]:

@@ -46,8 +46,12 @@ class Row:
     @property
     def relative(self) -> bool:
         """Whether the error is a share of what was measured."""
-        limit = self.quantity.endswith("limit")
-        return self.unit not in ABSOLUTE and self.measured != 0.0 and not limit
+        return self.unit not in ABSOLUTE and self.measured != 0.0 and not self.is_limit
+
+    @property
+    def is_limit(self) -> bool:
+        """Whether the source gives an upper limit only, in place of a measured value."""
+        return self.quantity.endswith("limit")
 
     @property
     def error(self) -> float:
@@ -56,12 +60,13 @@ class Row:
 
     @property
     def error_text(self) -> str:
-        """The error with its sign."""
+        """The error with its sign; above a limit it is the least one."""
         if self.relative:
             return f"{100.0 * self.error:+.0f} %"
         factor, unit = TOLD.get(self.unit, (1.0, self.unit))
         digits = 2 if unit in ("-", "m") else 1
-        return f"{factor * self.error:+.{digits}f} {unit}".removesuffix(" -")
+        least = "at least " if self.is_limit and self.error > 0.0 else ""
+        return f"{least}{factor * self.error:+.{digits}f} {unit}".removesuffix(" -")
 
 
 def about(measured: float, share: float) -> tuple[float, float]:

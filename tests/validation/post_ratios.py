@@ -169,6 +169,7 @@ INTRODUCTION = """
 
 Mark: below {mark:g} up to {up_to:g} of the half width, a target. It is met by {met} of {count} vehicles.
 Beyond it, in bold: {beyond}. Without tyres at the post: {bare}.
+{unexplained}
 
 Impulses stand beside, as a ratio of two small ones says little. The share is that of the vehicle's
 momentum. Without tyres at the post, the load is of the skin and the rigid core. The core is met in {core} of
@@ -185,6 +186,8 @@ def section(rows: Sequence[Ratio], of_truck: Sequence[Part]) -> str:
     beyond, skin = ([name for name in VEHICLES if of[name].ratio >= MARK] for of in (met, bare))
     numbers = {"mark": MARK, "up_to": UP_TO, "count": len(VEHICLES), "met": len(VEHICLES) - len(beyond)}
     names = {"beyond": ", ".join(beyond) or "none", "bare": ", ".join(skin) or "none"}
+    unknown = " and ".join(f"`{name}`" for name in beyond if name != TRUCK)
+    names["unexplained"] = f"Why {unknown} is beyond it is not known." if unknown else ""
     core = {"core": sum(row.core > 0 for row in rows), "runs": len(rows)}
     lines = [INTRODUCTION.format(**numbers, **names, **core)]
     for name in VEHICLES:
@@ -200,10 +203,10 @@ The stronger sheet has {stronger:g} times the stress in the ends of the bumper, 
 table the truck is {heavy:,.0f} times as heavy and keeps its speed. One zone at a time has its stress.
 """
 REASONS = """- **Rails.** They stand 0.35 to 0.5 m from the middle, beside the post. The indentation is
-  {length:.2f} m long and draws them in. Skin far from a post goes in by less than the post does. It leans on
-  the post's flank as firmly as skin next to it, with 0.35 of a wedge's force. So the ratio of a zone grows
-  with its distance. That is the law of [`indentation.hpp`](../../cpp/src/kernels/indentation.hpp). Another
-  length does not mend it.
+  {length:.2f} m long and draws them in. Skin far from a post goes in by less than the post does. Both press
+  the post's flank with the same share, 0.35, of what a wedge of that slope gives. So the ratio of a zone
+  grows with its distance. That is the law of [`indentation.hpp`](../../cpp/src/kernels/indentation.hpp). With
+  another length the ratio is beyond the mark, too.
 - **Sheet.** The ends of the bumper have {stress:.0f} kPa; the lower bound of the fit is 10 kPa. No run has a
   post there. So little loads the post forward. With a stronger sheet the ratio is less.
 - **Front tyre.** It stands 0.76 to 1.01 m from the middle. Its tread pushes the truck off the post, so that

@@ -17,10 +17,12 @@ from pathlib import Path
 
 import birm3d
 from birm3d import Rating, units
+from birm3d.assessment.limits import severity_class
 from birm3d.reporting.given_tests import GivenTest, given_tests
 from birm3d.reporting.published_class import class_of, judged_class
 
 PAGE = Path(__file__).with_name("ratings.md")
+COMPUTED = Path(__file__).with_name("results") / "redirection_computed.txt"  # written by all_tests.py
 
 _HEAD = """# Ratings and occupant risk beside published tests
 
@@ -31,15 +33,21 @@ says so.
 
 The scenes of MASH 4-11, of the two tractor-trailers and of the broadside pickup are those of the
 [page of all tests](README.md). Greatest roll is that of both units here, and that of the tractor there. MASH
-4-12 is 2214NJ-2 there. TB11 and TB51 are SWOV TB11 and SWOV TB51 there, with the preset of the class: a
-small car, where here it is a sedan's shape at 900 kg.
+4-12 is 2214NJ-2 there. It overturns in both; there one row has containment and standing upright together.
+TB11 and TB51 are SWOV TB11 and SWOV TB51 there, with the preset of the class, loaded to the mass of the test.
+Here TB11 is a sedan's shape at 900 kg, and the bus of TB51 is scaled. The notes have what is computed there.
 """
 
 
 _HOW = """Penetration is that of the standard's point past its datum; of roadside tests that of any part of
 the vehicle past the traffic face. Class or penetration: right if the class of the computed penetration is
 that of the published one. ASTM F2656 classes the dynamic penetration: P1 up to 1 m, P2 up to 7 m. Of
-roadside tests the verdict is judged, and the severity by ASI where it was published."""
+roadside tests the verdict is judged, and the severity by ASI where it was published. Containment counts
+here, too, where it is as commonly reported: see the sources."""
+
+
+REPEATED = {"TB11": "SWOV TB11", "TB51": "SWOV TB51"}
+"""First words of tests here, and their names on the page of all tests, where another vehicle stands in."""
 
 
 _RISK = """The sedan's channels are those of the compartment; the model's vehicle is one body, so that its
@@ -48,7 +56,7 @@ the preset's side gives way until the pole is at the rigid body, which it should
 
 
 LEFT_OUT = (
-    ("Delta DSC720FP, fixed bollard", "sizes are published, and no test"),
+    ("Delta DSC720FP, fixed bollard", "sizes are published, but no result of a test"),
     (
         "Delta DSC7000, beam barricade",
         "a beam, no bollard: neither its sizes nor those of its supports are published",
@@ -165,7 +173,29 @@ def _row(case: GivenTest, rating: Rating) -> list[str]:
     own += "".join(f"; {name} {row[name].shown}" for name in ("ASI", "greatest roll") if name in row)
     contained = "contained" if rating.contained else "not contained"
     penetration = f"{rating.penetration:.2f}"
-    return [case.name, own, contained, penetration, case.published, right, judged, case.note]
+    return [case.name, own, contained, penetration, case.published, right, judged, note_of(case)]
+
+
+def note_of(case: GivenTest) -> str:
+    """Return the last cell of a case: its own note, then what the page of all tests has of it."""
+    return "; ".join(filter(None, (case.note, _elsewhere(case))))
+
+
+def _elsewhere(case: GivenTest) -> str:
+    """Return what the page of all tests has of a case, with the vehicle that stands for it there."""
+    name = REPEATED.get(case.name.split(",")[0])
+    if name is None:
+        return ""
+    rows = COMPUTED.read_text(encoding="utf-8").splitlines()
+    (cells,) = (row.split("; ") for row in rows if row.startswith(f"{name}; "))
+    vehicle, mass = cells[1].split(" ", 1)
+    told = f"on the page of all tests, `{vehicle}` loaded to {mass}: roll {cells[5]} deg"
+    published = re.search("severity ([ABC])", case.published_class)
+    if published is None:
+        return told
+    asi = float(cells[-1])
+    judged = "right" if published[1] == severity_class(asi) else "**wrong**"
+    return f"{told}; ASI {asi:.2f}, class {severity_class(asi)}: {judged}"
 
 
 def _table(head: list[str], rows: list[list[str]]) -> str:

@@ -1,6 +1,6 @@
 """How the four numbers of the corners were chosen: misfit to small-overlap tests about the chosen values.
 
-    python tests/validation/scan_corners.py    # half a minute; writes corners.md and results/corners.csv
+    python tests/validation/scan_corners.py    # 6 s of processor time; corners.md, results/corners.csv
 
 Each number is varied while the other three stay, for the passenger car, the minivan and the pickup together.
 
