@@ -141,6 +141,6 @@ def test_moments_beside_finite_elements_are_told_where_loads_are() -> None:
     errors = [row.error for row in rows if row.vehicle == "cargo_truck"]
     assert len(errors) == 4
     least, most = (1.0 / (1.0 + error) for error in (max(errors), min(errors)))
-    assert f"the moment was {least:.1f} to {most:.1f} times that of the preset cargo_truck" in _LOW
+    assert f"the moment was {least:.1f} to {most:.1f} times that of the preset cargo truck" in _LOW
     told = f"{-100.0 * max(errors):.0f} to {-100.0 * min(errors):.0f} % less than in four finite-element runs"
     assert told in " ".join((TESTS.parent / "README.md").read_text(encoding="utf-8").split())

@@ -340,7 +340,7 @@ def test_cautions_are_said_where_they_matter() -> None:
     caution = loads.caution
     periods = np.geomspace(0.03, 0.3, 31)
     most = loads.spectrum(periods).max() / loads.governing.equivalent_static_force
-    told = f"With natural periods from 0.03 to 0.3 s, wall carries up to {most:.2f} times this"
+    told = f"With natural periods from 0.03 to 0.3 s, wall carries up to {most:.2f} times the"
     assert told in caution, "an assumed period may lie in a notch of the spectrum"
     assert "still acts" in caution
     assert "natural period of 0.1 s is assumed" in caution

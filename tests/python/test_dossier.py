@@ -203,7 +203,7 @@ def test_every_number_has_the_band_of_the_class(page: Page, result: Result) -> N
         max(result.metrics[name], predicted.high[name]) / 1e3
         for name in ("peak_element_force_50ms", "peak_overturning_moment_50ms")
     )
-    told = f"design with {force:,.0f} kN and {moment:,.0f} kN m"
+    told = f"upper ends {force:,.0f} kN and {moment:,.0f} kN m"
     assert glance["What does the barrier have to carry?"].endswith(told)
     risk = birm3d.occupant_risk(predicted)
     assert [row[4:] for row in page.table("Occupant risk")] == [[row[2], tidy(row[4])] for row in risk.rows]
