@@ -22,7 +22,7 @@ import birm3d
 from bench_birm3d import cpu_model, write_rows
 from birm3d import Barrier, Simulation, Vehicle, units
 
-RESULTS = Path(__file__).parent / "results/predict.csv"
+RESULTS = Path(__file__).parent / "results/predictions/time.csv"
 MEASURED = ("max_displacement", "peak_force_50ms")
 SCENES = (
     ("passenger_car", "rigid wall", Barrier.rigid_wall(), units.km_h(56), 90.0),
