@@ -174,7 +174,7 @@ TRUST = (
     ("Lateral design loads of rails", ("force over 50 ms",), "predicted"),
     ("Trucks at bollards and walls, head-on", ("dynamic penetration",), "predicted"),
 )
-# What a role does not say of a kind.
+# Said beside the role: how far the rows of a kind are blind.
 RESERVATIONS = {
     "Finite-element vehicles N and S: walls, oblique walls, poles": (
         "the law of N was chosen with all runs in view"

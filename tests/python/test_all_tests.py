@@ -62,7 +62,7 @@ def test_readme_has_rows_of_the_page() -> None:
     assert "\n".join(rows) == tables.trust(), "the table of README.md must be that of docs/build/tables.py"
     assert len(rows) <= 2 + 10
     names = {all_tests.kind(name).TITLE: name for name in all_tests.KINDS}
-    # What is told of exits, rolls, posts and moments: its error, or that there is no test of it.
+    # Each of these quantities has its error, or the page says that no test measured it.
     for quantity in ("exit angle", "greatest roll", "overturning moment"):
         assert any(re.search(rf"{quantity} \d+ of \d+.*error", row) for row in rows)
     (none,) = re.findall(r"\nNot checked, .*", section)

@@ -6,6 +6,7 @@ import csv
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
 
 FOLDER = Path(__file__).parent
 MEASURED = FOLDER / "measured"
@@ -88,6 +89,18 @@ def write(name: str, rows: Iterable[Row]) -> None:
         table.writerow(names)
         for row in rows:
             table.writerow([_text(getattr(row, each)) for each in names])
+
+
+def write_rows(path: Path, rows: Sequence[Any]) -> None:
+    """Write a table of dataclasses of one kind: five digits of each number that is no whole one."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    names = [field.name for field in fields(rows[0])]
+    with path.open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(names)
+        for row in rows:
+            values = (getattr(row, each) for each in names)
+            table.writerow([f"{value:.5g}" if isinstance(value, float) else value for value in values])
 
 
 def read(name: str) -> list[Row]:

@@ -17,18 +17,17 @@ deflection, fitted to walls at 20 and 40 mph, with an indentation length of 0.5 
 from __future__ import annotations
 
 import argparse
-import csv
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
 
 import bench_finite_element as bench
 import birm3d
+from comparison import write_rows
 from finite_element import VEHICLES, Run, runs
 from finite_element_fit import Fit, Prediction, fit, predicted
 from finite_element_skin import DATA, SKINS, Skin, changed, vehicle_with
@@ -165,18 +164,6 @@ def fitted(key: str, steps: int, starts: int, jobs: int) -> tuple[list[Row], lis
     return rows, numbers
 
 
-def write(path: Path, rows: Sequence[Any]) -> None:
-    """A table of dataclasses of one kind: five digits of each number."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    names = [field.name for field in fields(rows[0])]
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(names)
-        for row in rows:
-            values = (getattr(row, name) for name in names)
-            writer.writerow([value if isinstance(value, str) else f"{value:.5g}" for value in values])
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -187,8 +174,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     options = parser.parse_args(arguments)
     rows, numbers = fitted(options.vehicle, options.steps, options.starts, options.jobs)
-    write(RESULTS / f"finite_element_{options.vehicle}.csv", rows)
-    write(RESULTS / f"finite_element_{options.vehicle}_numbers.csv", numbers)
+    write_rows(RESULTS / f"finite_element_{options.vehicle}.csv", rows)
+    write_rows(RESULTS / f"finite_element_{options.vehicle}_numbers.csv", numbers)
     return 0
 
 

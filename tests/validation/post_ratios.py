@@ -9,9 +9,8 @@ from __future__ import annotations
 import csv
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
 
 import birm3d
 import numpy as np
@@ -31,8 +30,6 @@ PLATFORM = 0.13  # s
 LEAST = 0.02  # of the forward impulse, of a zone that has a row of its own
 HEAVY = 1e3  # factor on the mass of a vehicle that keeps its speed
 ADDED_UP = 1e-4  # tolerance of runs whose sum is compared: at 1e-3 it is 0.5 % off
-
-Kept = TypeVar("Kept", "Ratio", "Part")
 
 
 @dataclass(frozen=True)
@@ -118,19 +115,8 @@ def alone(who: birm3d.Vehicle, zone: str) -> birm3d.Vehicle:
     return who.with_zones({name: law.scaled(1e-6) for name, law in who.zones.items() if name != zone})
 
 
-def write(path: Path, rows: Sequence[Kept]) -> None:
-    """Write rows of a table."""
-    names = [field.name for field in fields(rows[0])]
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(names)
-        for row in rows:
-            values = [getattr(row, name) for name in names]
-            writer.writerow([f"{value:.5g}" if isinstance(value, float) else value for value in values])
-
-
 def read_ratios() -> list[Ratio]:
-    """What :func:`write` wrote of the ratios."""
+    """What :func:`comparison.write_rows` wrote of the ratios."""
     numbers = ("offset_share", "forward", "left", "momentum")
     with RATIOS.open(encoding="utf-8") as file:
         return [
@@ -145,7 +131,7 @@ def read_ratios() -> list[Ratio]:
 
 
 def read_parts() -> list[Part]:
-    """What :func:`write` wrote of the truck's parts."""
+    """What :func:`comparison.write_rows` wrote of the truck's parts."""
     with PARTS.open(encoding="utf-8") as file:
         return [
             Part(row["kind"], row["what"], float(row["forward"]), float(row["left"]))

@@ -8,16 +8,16 @@ elements are those of tests/data/finite_element: poles of 0.354 m at 30 mph.
 
 from __future__ import annotations
 
-import csv
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
 sys.path[:0] = [str(FOLDER), str(FOLDER.parent / "bench")]
 
 import post_ratios  # noqa: E402
+from comparison import write_rows  # noqa: E402
 from finite_element import POLE_DIAMETER  # noqa: E402
 from post_runs import crash, half_width, impulse, speed, vehicle  # noqa: E402
 
@@ -92,16 +92,6 @@ def loads() -> Iterator[Load]:
         print(name, flush=True)
 
 
-def write(found: Sequence[Load]) -> None:
-    names = [field.name for field in fields(Load)]
-    with RESULTS.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(names)
-        for row in found:
-            values = [getattr(row, name) for name in names]
-            writer.writerow([value if isinstance(value, str) else f"{value:.5g}" for value in values])
-
-
 def _table(title: str, heads: Sequence[str], rows: Sequence[Load], text: Callable[[Load], str]) -> str:
     lines = ["", f"**{title}**", "", f"| vehicle | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
     for name in VEHICLES:
@@ -131,9 +121,9 @@ def page(found: Sequence[Load]) -> str:
 
 def main() -> int:
     found = list(loads())
-    write(found)
-    post_ratios.write(post_ratios.RATIOS, list(post_ratios.ratios()))
-    post_ratios.write(post_ratios.PARTS, list(post_ratios.parts()))
+    write_rows(RESULTS, found)
+    write_rows(post_ratios.RATIOS, list(post_ratios.ratios()))
+    write_rows(post_ratios.PARTS, list(post_ratios.parts()))
     rest = post_ratios.section(post_ratios.read_ratios(), post_ratios.read_parts())
     (FOLDER / "posts.md").write_text(f"{page(found)}\n{rest.rstrip()}\n", encoding="utf-8", newline="\n")
     return 0

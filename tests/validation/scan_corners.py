@@ -15,7 +15,7 @@ import dataclasses
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -29,6 +29,7 @@ import numpy as np  # noqa: E402
 import tomlkit  # noqa: E402
 from birm3d import units  # noqa: E402
 from birm3d.vehicle.vehicle_file import preset_path  # noqa: E402
+from comparison import write_rows  # noqa: E402
 
 RESULTS, PAGE = FOLDER / "results/corners.csv", FOLDER / "corners.md"
 FLANK, ALONG, WIDTH, SHARE = "flank", "along", "width", "share"
@@ -168,18 +169,8 @@ def scan() -> Iterator[Misfit]:
         print(number, flush=True)
 
 
-def write(found: Sequence[Misfit]) -> None:
-    names = [field.name for field in fields(Misfit)]
-    with RESULTS.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(names)
-        for row in found:
-            values = [getattr(row, name) for name in names]
-            writer.writerow([f"{value:.5g}" if isinstance(value, float) else value for value in values])
-
-
 def read() -> list[Misfit]:
-    """What :func:`write` wrote."""
+    """What :func:`comparison.write_rows` wrote."""
     with RESULTS.open(encoding="utf-8") as file:
         return [
             Misfit(
@@ -220,7 +211,7 @@ def page(found: Sequence[Misfit]) -> str:
 
 
 def main() -> int:
-    write(list(scan()))
+    write_rows(RESULTS, list(scan()))
     PAGE.write_text(page(read()), encoding="utf-8", newline="\n")
     return 0
 

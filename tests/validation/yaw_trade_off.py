@@ -16,9 +16,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
 
+from comparison import write_rows
 from finite_element_fit import YAW_MARK, fit, predicted
 from finite_element_skin import SKINS, vehicle_with
-from fit_finite_element import RESULTS, Row, known_runs, write
+from fit_finite_element import RESULTS, Row, known_runs
 from page import within
 
 SIGMAS = (10.0, 5.0, 2.5, 1.25)  # deg
@@ -84,7 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with ProcessPoolExecutor(options.jobs) as pool:
         sigmas, alone = zip(*cases, strict=True)
         rows = list(pool.map(trade_off, sigmas, alone, [options.steps] * len(cases)))
-    write(RESULTS / "finite_element_yaw.csv", rows)
+    write_rows(RESULTS / "finite_element_yaw.csv", rows)
     return 0
 
 

@@ -86,11 +86,6 @@ class GivenTest:
         """Return the scene that stands for the test."""
         return _simulation(self.recipe)
 
-    def computed(self, result: Result) -> float | bool:
-        """Return what a run of the scene says of the quantity."""
-        rating = self.rated(result)
-        return float(result.metrics[self.quantity]) if rating is None else rating.contained
-
     def rated(self, result: Result) -> Rating | None:
         """Return the rating of a run of the scene; ``None`` of a test of another quantity."""
         if self.quantity != "containment":
@@ -267,7 +262,7 @@ def nearest(scene: Scene, count: int = 10) -> list[Compared]:
         for test in given_tests():
             if test.recipe == recipe:
                 rating = test.rated(result)
-                computed = test.computed(result) if rating is None else rating.contained
+                computed = float(result.metrics[test.quantity]) if rating is None else rating.contained
                 found.append(Compared(test, simulation.scene, computed, alike, rating))
     return found
 

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from typing import NamedTuple
+from typing import Literal, NamedTuple, TypeAlias, get_args
 
-__all__ = ["QUANTITIES", "STIFFNESSES", "Z_80", "ClassScatter", "joined"]
+__all__ = ["QUANTITIES", "STIFFNESSES", "Z_80", "ClassScatter", "ScatterName", "joined"]
 
 Z_80 = 1.2816
 """Standard deviations from the median of a normal distribution to the ends of its 80 % band."""
 
 STIFFNESSES = ("front", "side", "corner", "tires", "springs")
 """Quantities that are factors on zones: on their forces, or on the stiffness of their wheels' springs."""
-QUANTITIES = (
-    *STIFFNESSES[:4],
+ScatterName: TypeAlias = Literal[
+    "front",
+    "side",
+    "corner",
+    "tires",
     "mass_center_height",
     "barrier_friction",
     "tire_friction",
@@ -26,7 +29,8 @@ QUANTITIES = (
     "wheelbase",
     "roll_inertia",
     "yaw_inertia",
-)
+]
+QUANTITIES: tuple[ScatterName, ...] = get_args(ScatterName)
 """What may differ, in the order in which it is drawn. The pitch inertia follows from that in yaw."""
 
 

@@ -15,7 +15,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import AfterValidator, Field, model_validator
 
 from ..io.toml import Strict, reject
-from .class_scatter import STIFFNESSES, Z_80
+from .class_scatter import STIFFNESSES, Z_80, ScatterName
 from .scaling import SIZES, Extent, Factors, PlaceMap, Scaling, factors_of, scaling_between
 from .skin_mesh import SkinMesh
 from .zone_law import OF_WHEELS, NonNegative, Positive, ZoneLaw
@@ -367,24 +367,7 @@ class Scatter(Block):
     there are none.
     """
 
-    name: Literal[
-        "front",
-        "side",
-        "corner",
-        "tires",
-        "mass_center_height",
-        "barrier_friction",
-        "tire_friction",
-        "springs",
-        "edge_flank",
-        "bed_fixings",
-        "length",
-        "width",
-        "height",
-        "wheelbase",
-        "roll_inertia",
-        "yaw_inertia",
-    ]
+    name: ScatterName
     zones: tuple[LawName, ...] = ()
     median: Positive = 1.0
     log_sd: Annotated[float, Field(gt=0.0, le=2.0)]
