@@ -57,12 +57,7 @@ struct JointHistory {
 
 struct History {
     // Of one term of the energy balance (J).
-    const Column& energy(double Energies::* term) const {
-        std::size_t i = 0;
-        while (energy_terms[i].value != term)
-            ++i;
-        return energies[i];
-    }
+    const Column& energy(double Energies::* term) const { return energies[index_of(term)]; }
 
     Column time;  // s
     Vec3

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace birm3d {
 
-// In J, from zero but for `kinetic`.
+// All in J. At the start all but `kinetic` are zero.
 struct Energies {
     double kinetic = 0.0, potential = 0.0, stored = 0.0, crushed = 0.0;
     double barrier_friction = 0.0, tire_friction = 0.0, ground_friction = 0.0;
@@ -41,6 +42,14 @@ inline constexpr std::array energy_terms{
     EnergyTerm{"sliding", &Energies::sliding, true, "lost where a unit slides on another one"},
     EnergyTerm{"yielding", &Energies::yielding, true, "plastic work of posts that yield"},
 };
+
+// Index of a term in energy_terms.
+constexpr std::size_t index_of(double Energies::* term) {
+    std::size_t i = 0;
+    while (energy_terms[i].value != term)
+        ++i;
+    return i;
+}
 
 inline double Energies::total() const {
     double sum = 0.0;
