@@ -188,11 +188,11 @@ def show(self: Result, *, view: View = "three_quarter", color: Color = "crush") 
 
 
 @checked
-def write_html(self: Result, path: str | Path, *, frames: int = 61) -> None:
+def write_html(self: Result, path: str | Path, *, frames: int = 61, crush: bool = True) -> None:
     """Write one self-contained, interactive page; see :func:`birm3d.html_page.write_html`."""
     from .html_page import write_html
 
-    write_html(self, path, frames=frames)
+    write_html(self, path, frames=frames, crush=crush)
 
 
 @checked

@@ -8,6 +8,8 @@ from typing import Any
 
 import birm3d
 import pytest
+from birm3d.assessment import class_bands
+from birm3d.study import limit_class
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted((ROOT / "docs/pages/how-to").glob("*.md"))
@@ -96,13 +98,15 @@ def test_what_is_given_is_given_to_a_page() -> None:
 
 @pytest.fixture
 def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Presets of few nodes, unless a page asks for a mesh: this is about the calls."""
+    """Presets of few nodes, few vehicles of a class, unless a page asks for more: this is about the calls."""
     preset = birm3d.Vehicle.preset
 
     def of_few_nodes(name: str, **changes: Any) -> birm3d.Vehicle:
         return preset(name, **{"mesh_density": 0.1, **changes})
 
     monkeypatch.setattr(birm3d.Vehicle, "preset", of_few_nodes)
+    monkeypatch.setattr(limit_class, "_USUAL_DRAWS", 8)
+    monkeypatch.setattr(class_bands, "_DRAWS", 8)
 
 
 # Of coarse skins, and of scenes that are chosen to be short.

@@ -35,7 +35,7 @@ __all__ = ["write_html"]
 _ENERGY, _MOMENTUM = 5e-3, 1e-9
 
 
-def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
+def write_html(result: Result, path: str | Path, *, frames: int = 61, crush: bool = True) -> None:
     """Write one page that needs no network: scene, outcome, plan view with a slider, histories, crush.
 
     Histories are after their channel frequency class (SAE J211-1).
@@ -46,6 +46,8 @@ def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
         Of the file.
     frames
         Number of instants of the plan view's slider, >= 2.
+    crush
+        Whether it has pictures of the residual crush; without them it is written sooner.
 
     Raises
     ------
@@ -72,7 +74,7 @@ def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
         "ELEMENTS": _element_table(result),
         "LOADMAP": _load_map(result),
         "METRICS": _table(("metric", "value", "unit"), _metric_rows(result)),
-        "CRUSH": _crush_pictures(result) or "<p>None.</p>",
+        "CRUSH": _crush_section(result) if crush else "",
         "REPORT": escape(result.report()),
         "ROWS": "" if content["every"] == 1 else f"One row in {content['every']} is shown.",
         "REPLAY": here.joinpath("replay.js").read_text(encoding="utf-8"),
@@ -175,11 +177,12 @@ def _metric_rows(result: Result) -> list[tuple[str, ...]]:
     return [(name, f"{value:.6g}", METRIC_UNITS.get(name, "")) for name, value in result.metrics.items()]
 
 
-def _crush_pictures(result: Result) -> str:
+def _crush_section(result: Result) -> str:
     units = range(len(result.scene.vehicle.units))
-    return "".join(
+    pictures = "".join(
         _crush_picture(result, side, unit) for unit in units for side in crushed_sides(result, unit=unit)
     )
+    return f"<h2>Residual crush</h2>\n{pictures or '<p>None.</p>'}"
 
 
 def _crush_picture(result: Result, side: Side, unit: int) -> str:

@@ -130,7 +130,8 @@ def _files(case: Case, title: str | None, facts: dict[str, str]) -> dict[str, by
         files = {CAPSULE: (Path(place) / CAPSULE).read_bytes()}
         if find_spec("plotly") is not None:
             interactive = Path(place) / "histories.html"
-            case.result.write_html(interactive, frames=min(_FRAMES, len(case.result.time)))
+            # The dossier has pictures of the crush.
+            case.result.write_html(interactive, frames=min(_FRAMES, len(case.result.time)), crush=False)
             files[interactive.name] = interactive.read_bytes()
     files["metrics.csv"] = metrics_csv(case.result)
     if case.result.scene.barrier is not None:
