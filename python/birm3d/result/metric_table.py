@@ -72,7 +72,8 @@ _MOTION_METRICS: Mapping[str, Metric] = {
         unit="deg",
         group="departure",
         meaning="angle of the path of a vehicle that is contained, from the barrier's line, positive away "
-        "from it, at separation",
+        "from it, at separation; negative where the mass centre still nears the line then, and tyres turn it "
+        "away later",
         needs="end",
         value=made.exit_angle,
         shown=Shown("exit angle from the barrier's line", ".1f", "deg", headline=True),
