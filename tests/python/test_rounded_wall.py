@@ -353,13 +353,15 @@ def test_a_wall_that_enters_the_side_is_the_same_in_segments() -> None:
     ends = []
     for segments in (1, 3, 5):
         wall = Barrier.rigid_wall(width=4.0, height=0.8, edge_radius=0.25, segments=segments)
-        result = Simulation(car, wall, 25.6, 166.0, -1.6, impact_yaw=90.0, duration=0.3).run()
+        scene = Simulation(car, wall, 25.6, 166.0, -1.6, impact_yaw=90.0, duration=0.3)
+        result = scene.run()
         assert result.statistics.body_steps > 0
         assert result.statistics.steps < 300
         kinetic, impacts = result.energy["kinetic"], result.energy["impacts"]
         assert kinetic.max() < (1.0 + 1e-6) * kinetic[0]
         assert (np.maximum.accumulate(impacts) - impacts).max() < 1e-4 * kinetic[0]
         assert result.metrics["energy_residual"] < 1e-3
-        ends.append(result.velocity[-1])
-    # The wall's end stops the car by its rigid body, which quivers: 1 % of the speed, 0.01 % of the energy.
+        ends.append(varied(scene, {"settings.tolerance": 1e-5}).run().velocity[-1])
+    # The wall's end stops the car by its rigid body, which quivers: 1 % of the speed, 0.01 % of the energy. By default
+    # steps the quivering alone differs by 0.9 m/s from tolerance to tolerance.
     np.testing.assert_allclose(ends[1:], [ends[0], ends[0]], rtol=0.0, atol=0.256)

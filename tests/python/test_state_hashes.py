@@ -82,7 +82,7 @@ HASHES = {
     "rolling": "82dd026185d1c734",
     "oblique car": "c2cc9e07cf9f47d4",
     "paper pickup, bollards": "2f038a6a3b55c0df",
-    "pickup, bollards": "3354f41e5aec3644",
+    "pickup, bollards": "57ab022f6e6563e0",
     "car, Jersey": "233e81eac75e0986",
     "coarse car, Jersey": "fc0c05f17c931ba6",
     "semi, wall": "8e7526cf9d9e85b4",

@@ -123,7 +123,7 @@ def main() -> int:
     found = list(loads())
     write_rows(RESULTS, found)
     write_rows(post_ratios.RATIOS, list(post_ratios.ratios()))
-    write_rows(post_ratios.PARTS, list(post_ratios.parts()))
+    write_rows(post_ratios.PARTS, list(post_ratios.parts(post_ratios.read_ratios())))
     rest = post_ratios.section(post_ratios.read_ratios(), post_ratios.read_parts())
     (FOLDER / "posts.md").write_text(f"{page(found)}\n{rest.rstrip()}\n", encoding="utf-8", newline="\n")
     return 0

@@ -15,12 +15,22 @@ namespace birm3d {
 
 namespace {
 
-// Did the post stand in front of the panel at the start of the step?
-bool stood_before(const ContactPass& pass, std::size_t k, std::size_t p) {
-    const Panel& panel = pass.mesh.panel[p];
-    const Indentation then =
-        indentation_by(pass.obstacle(k), pass.near[k].before, panel, pass.mesh, pass.scene.settings);
-    return then.beside() < 0.0 && gap_of_panel(then, p, pass.mesh, pass.before, 0.0, 0.0) > 0.0;
+// Is the post or face in front of all nodes of the panel, as they were at the start of the step? `least`: greatest gap that does
+// not count as in front (m).
+bool is_in_front(const ContactPass& pass, const Indentation& indentation, std::size_t p, double least) {
+    return gap_of_panel(indentation, p, pass.mesh, pass.before, 0.0, least) > least;
+}
+
+// Has the post, which is before the panel and deeper than its nodes now, come from in front, and not past the panel's edge?
+bool came_from_in_front(const ContactPass& pass, std::size_t k, std::size_t p, const Indentation& now) {
+    const Indentation then = indentation_by(pass.obstacle(k), pass.near[k].before, pass.mesh.panel[p],
+                                            pass.mesh, pass.scene.settings);
+    const double beside = then.beside();
+    // A free step ends where the post lies on the nodes to rounding.
+    constexpr double least = -tolerance::touching_gap;
+    if (beside < 0.0) return is_in_front(pass, then, p, least);
+    // It passed the edge within the step. Where was it at that instant?
+    return is_in_front(pass, between(then, now, beside / (beside - now.beside())), p, least);
 }
 
 // What the obstacle indents in the list; nothing where that does not have it.
@@ -54,11 +64,8 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         }
         // Bound of how far the post can have moved in, and nodes can have moved off it, within the step.
         const double growth = 2.0 * pass.margin * indentation.fastest_growth(panel);
-        const double deepest = indents || passed ? 0.0 : growth;
-        const double gap =
-            indents && pushes ? 0.0 : gap_of_panel(indentation, p, mesh, pass.before, 0.0, -deepest);
-        if (gap > 0.0) continue;
-        if (indents || (!passed && (gap > -deepest || stood_before(pass, k, p)))) {
+        if (!(indents && pushes) && is_in_front(pass, indentation, p, 0.0)) continue;
+        if (indents || (!passed && came_from_in_front(pass, k, p, indentation))) {
             now.panels |= bit;
             list.push_back({k, p, indentation,
                             indentation_by(obstacle, near.before, panel, mesh, pass.scene.settings), growth});

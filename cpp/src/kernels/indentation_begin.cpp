@@ -1,4 +1,4 @@
-// Which panels a post, an edge or a face with a top edge can indent.
+// Which panels a post, an edge or a face with a top edge can indent, and where it stands as it comes to one.
 #include <cmath>
 
 #include "kernels/indentation.hpp"
@@ -59,6 +59,17 @@ bool can_indent(const Post& post, const Placement& stands, const Panel& panel, c
 bool can_indent(const TopEdge&, const Placement& stands, const Panel& panel, bool indents) {
     return is_upright(stands, panel, indents) &&
            facing(panel, stands, Vec3::UnitX()) > (indents ? turned_away : least_facing);
+}
+
+Indentation between(const Indentation& one, const Indentation& other, double fraction) {
+    constexpr double Indentation::* places[] = {
+        &Indentation::ox,      &Indentation::oy,     &Indentation::oz,
+        &Indentation::low,     &Indentation::high,   &Indentation::top,
+        &Indentation::surface, &Indentation::bottom, &Indentation::ceiling};
+    Indentation middle = other;
+    for (const auto place : places)
+        middle.*place = one.*place + fraction * (other.*place - one.*place);
+    return middle;
 }
 
 }  // namespace birm3d
