@@ -362,6 +362,6 @@ def test_a_wall_that_enters_the_side_is_the_same_in_segments() -> None:
         assert (np.maximum.accumulate(impacts) - impacts).max() < 1e-4 * kinetic[0]
         assert result.metrics["energy_residual"] < 1e-3
         ends.append(varied(scene, {"settings.tolerance": 1e-5}).run().velocity[-1])
-    # The wall's end stops the car by its rigid body, which quivers: 1 % of the speed, 0.01 % of the energy. With
-    # usual steps the quivering alone differs by 0.9 m/s from one tolerance to the next.
+    # The wall's end stops the car by its rigid body, which quivers: 1 % of the speed, 0.01 % of its energy.
+    # With usual steps the quivering alone differs by 0.9 m/s from one tolerance to the next.
     np.testing.assert_allclose(ends[1:], [ends[0], ends[0]], rtol=0.0, atol=0.256)
