@@ -225,7 +225,9 @@ void add_corner_forces(const ContactPass& pass, const std::vector<double>& force
         const Vec3 torque = face.indented ? face.torque : Vec3(node.cross(face.normal));
         const double normal_force = force[c] * face.weight * face.per_force;
         part.normal_force[i] = normal_force;
-        part.nx[i] = face.normal.x(), part.ny[i] = face.normal.y(), part.nz[i] = face.normal.z();
+        // Friction acts across the direction in which an indentation moves the node, as on nodes outside of corners.
+        const Vec3& across = face.indented ? face.direction : face.normal;
+        part.nx[i] = across.x(), part.ny[i] = across.y(), part.nz[i] = across.z();
         part.px[i] = at.x(), part.py[i] = at.y(), part.pz[i] = at.z();
         to.contact += {normal_force * face.normal, normal_force * torque};
         sum += normal_force;
