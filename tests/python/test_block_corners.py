@@ -119,7 +119,7 @@ def test_skin_that_an_edge_leaves_inside_a_face_makes_no_energy(edge_radius: flo
 def test_skin_on_an_edge_and_its_face_slides_the_same_by_any_step() -> None:
     """A minivan at 30 degrees: a front that an edge draws in comes to the face behind the edge as well.
 
-    Friction once acted across the edge's flank in such corners, and across the way in without them. So it depended
+    Friction once acted across the edge's flank in such corners, across the way in elsewhere. So it depended
     on the steps: 161 kN by default, 202 kN and 40,000 steps at 1e-5.
     """
     crash = Simulation(Vehicle.preset("minivan"), Barrier.planter(), 15.0, 30.0, 0.6, duration=0.2)
