@@ -332,3 +332,21 @@ def test_a_slow_vehicle_is_at_the_barrier_only_if_it_touches_it(
     )
     told = f"it was slower than a tenth of its impact speed when the run ended, {where} the barrier"
     assert outcome_detail(ended) == told  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("duration", [None, 10.0])
+@pytest.mark.parametrize(
+    ("share", "outcome"), [(0.86, "stopped"), (0.9, "stopped"), (0.95, "redirected"), (1.0, "redirected")]
+)
+def test_a_vehicle_that_turns_away_before_the_line_has_not_passed(
+    share: float, outcome: str, duration: float | None
+) -> None:
+    """A car beside a pole of 0.6 m still nears the line as it leaves, by 3 to 8 degrees, and its tyres turn it away.
+
+    Its mass centre comes within 0.9 m of the line at most. It was called "passed" from 0.9 of its half width on.
+    """
+    car = Vehicle.preset("passenger_car")
+    result = Simulation(car, Barrier.pole(diameter=0.6), 14.0, 90.0, 0.9 * share, duration=duration).run()
+    assert result.position[:, 0].max() < -0.9
+    assert result.velocity[-1, 0] < 0.0
+    assert result.outcome == outcome

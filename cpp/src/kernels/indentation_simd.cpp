@@ -99,7 +99,9 @@ BIRM3D_INLINE Packet gap_of_loaded(const IndentationNumbers& indentation, const 
     const Packet zero = 0.0, far = infinitely_far;
     const Packet unless_held =
         where_above(far, gap_of_holding_surface(indentation, known, followed, i), far, outward);
-    return where_above(zero, followed.gap, outward, unless_held);
+    const Packet ahead = where_above(followed.gap, in_reach, far, unless_held);
+    const Packet stands = where_above(far, Packet::load(known.contact_gap + i), ahead, unless_held);
+    return where_above(zero, followed.gap, outward, stands);
 }
 
 // 1 where the indentation extends over a node, else 0: D is beyond the panel's outermost node there, and the panel comes down

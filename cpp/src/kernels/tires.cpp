@@ -219,10 +219,21 @@ void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& sta
         move_stops_to_springs(unit, R, given_way, std::span(contacts).subspan(first));
 }
 
-WheelSet overloaded(const Unit& unit, double dt, std::span<const double> normal_impulses) {
+bool may_give_way(const Unit& unit) {
+    return std::any_of(unit.wheels.begin(), unit.wheels.end(),
+                       [](const Wheel& wheel) { return wheel.breakaway < infinity; });
+}
+
+void follow_loads(double dt, std::span<const double> normal_impulses, std::span<double> loads) {
+    constexpr double rise_time = 0.01;  // s
+    for (std::size_t i = 0; i < loads.size(); ++i)
+        loads[i] = (rise_time * loads[i] + normal_impulses[i]) / (rise_time + dt);
+}
+
+WheelSet overloaded(const Unit& unit, std::span<const double> loads) {
     WheelSet found = 0;
-    for (std::size_t i = 0; i < normal_impulses.size(); ++i)
-        if (normal_impulses[i] > unit.wheels[i].breakaway * dt) found |= WheelSet{1} << i;
+    for (std::size_t i = 0; i < loads.size(); ++i)
+        if (loads[i] > unit.wheels[i].breakaway) found |= WheelSet{1} << i;
     return found;
 }
 

@@ -32,8 +32,15 @@ enum class WheelAt { droop, rest, bump_stop };
 void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state, WheelSet given_way,
                         WheelAt at, std::vector<RigidContact>& contacts);
 
-// The wheels that give way under normal impulses in a step of dt (s). Impacts have no load and are not among the impulses.
-WheelSet overloaded(const Unit& unit, double dt, std::span<const double> normal_impulses);
+// Can any wheel give way?
+bool may_give_way(const Unit& unit);
+
+// Updates the loads of the wheels by their normal impulses in a step of dt (s), impacts included: N' = (F - N) / 10 ms (N).
+// A rigid wheel has its load at once, as a blow that no spring has. Real springs and tyres take about 10 ms.
+void follow_loads(double dt, std::span<const double> normal_impulses, std::span<double> loads);
+
+// The wheels that give way under these loads.
+WheelSet overloaded(const Unit& unit, std::span<const double> loads);
 
 // The vehicle's present motion, and that at the end of the step of this half kick. With the latter, friction follows
 // the trapezoid rule. For a nearly sticking wheel that would oscillate; then the present motion is used.

@@ -22,6 +22,24 @@ bool touches_barrier(const Scene& scene, const State& state) {
                        [&](const UnitState& unit) { return skin_touches_barrier(scene, unit); });
 }
 
+// Gives the event of a vehicle that left on the side it came from its verdict: stopped or redirected, by its motion as it lost
+// contact, to which its exit speed and angle belong.
+void judge_return(const Scene& scene, const State& state, Event& event) {
+    const Vec3& exit = state.touched ? event.released_velocity : state.units.front().body.velocity;
+    const double along = exit.dot(line_direction(event)), back = -exit.dot(event.towards),
+                 exit_speed = std::hypot(exit.x(), exit.y());
+    // Component of the approach in that direction. A path square to the line has none: what moves back was stopped.
+    const double came = scene.heading().dot(line_direction(event));
+    const bool goes_on = std::abs(came) < parallel ? back < parallel * exit_speed : along * came > 0.0;
+    if (goes_on && std::abs(along) > back && exit_speed > tolerance::stopped_share * scene.approach.speed) {
+        event.verdict = Verdict::redirected;
+        event.manner = is_beyond_end(scene, state, event) ? Manner::slides_to_end : Manner::leaves;
+        return;
+    }
+    event.verdict = Verdict::stopped;
+    event.manner = state.touched ? Manner::rebounds : Manner::rests_untouched;
+}
+
 // Gives the event of a vehicle that has left for good its verdict.
 void judge_departure(const Scene& scene, const State& state, Event& event) {
     const BodyState& body = state.units.front().body;
@@ -39,26 +57,27 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
         event.manner = passes_between(scene, state, event) ? Manner::between : Manner::beside;
         return;
     }
-    // Stopped or redirected: by its motion as it lost contact, to which its exit speed and angle belong.
-    const Vec3& exit = state.touched ? event.released_velocity : body.velocity;
-    const double along = exit.dot(line_direction(event)), back = -exit.dot(event.towards),
-                 exit_speed = std::hypot(exit.x(), exit.y());
-    // Component of the approach in that direction. A path square to the line has none: what moves back was stopped.
-    const double came = scene.heading().dot(line_direction(event));
-    const bool goes_on = std::abs(came) < parallel ? back < parallel * exit_speed : along * came > 0.0;
-    if (goes_on && std::abs(along) > back && exit_speed > tolerance::stopped_share * scene.approach.speed) {
-        event.verdict = Verdict::redirected;
-        event.manner = is_beyond_end(scene, state, event) ? Manner::slides_to_end : Manner::leaves;
-        return;
-    }
-    event.verdict = Verdict::stopped;
-    event.manner = state.touched ? Manner::rebounds : Manner::rests_untouched;
+    judge_return(scene, state, event);
+}
+
+// Has a vehicle that seemed to pass as it left turned away before the line? The tyres of a yawed vehicle turn its path.
+bool has_turned_away(const Scene& scene, const State& state, bool at_end, const Event& event) {
+    if (event.verdict != Verdict::passed || event.crossed || distance_past_line(scene, state, event) > 0.0)
+        return false;
+    const Vec3& velocity = state.units.front().body.velocity;
+    return -velocity.dot(event.towards) > std::max(tolerance::coasting_speed, parallel * velocity.norm()) &&
+           (at_end || is_clear_of_barrier(scene, state, event));
 }
 
 // A vehicle that was stopped or redirected has passed if it comes past an end of the barrier afterwards, on a curved path. One
-// that was turned back is judged until it is clear. `at_end`: is the run over? Then what moves towards the line has passed.
+// that seemed to pass, and turned away before the line, has not passed. One that was turned back is judged until it is clear. `at_end`: is the run over? Then what moves towards the line has passed.
 void revise(const Scene& scene, const State& state, bool at_end, Event& event) {
     if (!event.left || event.clear || event.touching || event.rolled_over() || runs_along_line(scene)) return;
+    if (has_turned_away(scene, state, at_end, event)) {
+        judge_return(scene, state, event);
+        event.clear = true;
+        return;
+    }
     if (event.verdict != Verdict::stopped && event.verdict != Verdict::redirected) return;
     const Vec3& velocity = state.units.front().body.velocity;
     event.clear = event.turned_back() && is_clear_of_barrier(scene, state, event);
@@ -135,8 +154,10 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
 }
 
 bool is_decided(const Scene& scene, const State& state, Event& event) {
-    const bool over = event.left && !event.touching &&
-                      is_over(scene, state, {event.turned_back(), event.is_past()}),
+    // One that is to pass is followed up to the line: its tyres may turn it away.
+    const KnownPath path{event.turned_back() || event.clear,
+                         event.is_past() && (event.crossed || event.over_top)};
+    const bool over = event.left && !event.touching && is_over(scene, state, path),
                at_rest = rests(scene, state, event);
     if (over || at_rest) {
         if (!over && !event.decided()) judge_rest(scene, state, event);

@@ -55,8 +55,18 @@ void move_unit(const Scene& scene, std::size_t u, const State& from, Trial& tria
 }
 
 // Wheels whose springs give way carry nothing any more. What their springs had stored is lost.
-void give_way(const Unit& model, WheelSet gone, UnitMotion& unit, Energies& energies) {
+void give_way(const Unit& model, Trial& trial, std::size_t u, UnitMotion& unit) {
+    if (!may_give_way(model)) return;
+    Column sum = trial.impulses[u].tire;
+    for (const Impact* impact : {&trial.at_start, &trial.at_end})
+        if (impact->happened)
+            for (std::size_t i = 0; i < sum.size(); ++i)
+                sum[i] += impact->impulses[u].tire[i];
+    unit.wheel_loads.resize(sum.size());
+    follow_loads(trial.dt, sum, unit.wheel_loads);
+    const WheelSet gone = overloaded(model, unit.wheel_loads);
     if ((gone & ~unit.given_way) == 0) return;
+    Energies& energies = trial.state.energies;
     const double before = spring_energy(model, unit.body, unit.given_way);
     unit.given_way |= gone;
     const double lost = before - spring_energy(model, unit.body, unit.given_way);
@@ -96,8 +106,7 @@ void accept(const Scene& scene, Trial& trial, State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         UnitState& unit = state.units[u];
         static_cast<UnitMotion&>(unit) = trial.state.units[u];
-        const WheelSet gone = overloaded(scene.vehicle->units[u], trial.dt, trial.impulses[u].tire);
-        give_way(scene.vehicle->units[u], gone, unit, trial.state.energies);
+        give_way(scene.vehicle->units[u], trial, u, unit);
         trial.exchange_trusses(u, unit.trusses);
         const std::vector<std::size_t>& active = trial.active[u].blocks();
         if (!active.empty()) unit.trusses.group(scene.vehicle->units[u].trusses, active);

@@ -128,13 +128,26 @@ TEST("a wheel gives way beyond its load, and is pushed up by its travel") {
     Unit weak = unit;
     weak.wheels[1].breakaway = 5000.0;
     weak.wheels[1].travel = 0.25;
-    CHECK(overloaded(weak, 0.5, std::vector<double>(4, 2500.0)) == 0);
-    const WheelSet gone = overloaded(weak, 0.5, std::vector<double>(4, 2501.0));
+    CHECK(may_give_way(weak) && !may_give_way(unit));
+    CHECK(overloaded(weak, std::vector<double>(4, 5000.0)) == 0);
+    const WheelSet gone = overloaded(weak, std::vector<double>(4, 5001.0));
     CHECK(gone == 2 && has_wheel(gone, 1) && !has_wheel(gone, 0) && !has_wheel(gone, 64));
     std::vector<RigidContact> contacts;
     find_tire_contacts(weak, 0, BodyState(), gone, WheelAt::bump_stop, contacts);
     CHECK(contacts.size() == 4);
     CHECK_CLOSE(contacts[1].gap - contacts[0].gap, 0.25, 1e-15, "exact but for rounding");
+}
+
+TEST("the load that wheels give way under is that of 10 ms, whatever the steps") {
+    // A blow of 300 N s within a step has a load of 30 kN, and not of 300 N s over the step.
+    for (const double dt : {1e-3, 1e-5, 1e-7}) {
+        std::vector<double> loads(1, 0.0);
+        follow_loads(dt, std::vector{300.0}, loads);
+        CHECK_CLOSE(loads[0], 30e3 / (1.0 + 100.0 * dt), 1e-9, "impulse over the rise time");
+        for (double time = 0.0; time < 0.2; time += 1e-3)
+            follow_loads(1e-3, std::vector{20.0}, loads);
+        CHECK_CLOSE(loads[0], 20e3, 1.0, "the load of 20 N s in each ms, after 20 rise times");
+    }
 }
 
 TEST("a wheel that lies flat is held at its centre") {

@@ -20,6 +20,7 @@ struct UnitMotion {
     SkinForces skin;                         // at this instant
     std::vector<ContactLoad> contact_loads;  // in the order of the obstacles
     std::vector<IndentedPanels> indented;    // the same
+    std::vector<double> wheel_loads;         // see follow_loads(); empty where no wheel can give way
     WheelSet given_way = 0;                  // wheels that were loaded beyond what they carry
     double steering_angle = 0.0;             // of the wheels that steer, to the left (rad)
 };
@@ -33,6 +34,7 @@ struct UnitState : UnitMotion {
         skin = {};
         contact_loads.clear();
         indented.clear();
+        wheel_loads.clear();
         given_way = 0;
         steering_angle = 0.0;
         trusses.reset(unit.trusses);
