@@ -124,6 +124,19 @@ def test_height_of_what_does_not_push() -> None:
     assert resultant_height(force, -moment).tolist() == [0.0] * 4  # below the ground there is none
 
 
+def test_a_force_that_is_mostly_weight_has_no_height() -> None:
+    """A truck that lay on a barrier of 1.07 m once had its 277 kN of weight and 56 kN at 11.6 m."""
+    pushed = np.full((1000, 3), [0.0, 0.0, -20e3])
+    pushed[:500, 0] = 100e3  # then it lies on the top
+    pushed[500:, 0] = 15e3
+    moment = np.cross([0.3, 0.0, 0.6], pushed)
+    load = ElementLoad(0, "wall", pushed, moment, 1e-4, np.array([0.0, 1.0, 0.0]))
+    assert load.resultant_height[:500] == pytest.approx(0.6 + 0.3 * 20e3 / 100e3)
+    assert not load.resultant_height[500:].any()
+    lies = ElementLoad(0, "wall", pushed[500:], moment[500:], 1e-4, np.array([0.0, 1.0, 0.0]))
+    assert lies.height_at_peak == 0.0
+
+
 def test_a_blow_within_one_row_leaves_the_heights_of_the_others() -> None:
     """Of the unfiltered peak of 102 MN a hundredth is more than all the rest of the crash has."""
     force = np.zeros((2000, 3))

@@ -78,9 +78,7 @@ class ElementLoad:
         force = self.force
         if self.interval * _CLASS <= _LONGEST and len(force):
             force = cfc(force, _CLASS, self.interval)
-        across = force[:, :2] if self.line is None else force[:, :2] @ np.array([self.line[1], -self.line[0]])
-        size = np.abs(across) if across.ndim == 1 else np.hypot(across[:, 0], across[:, 1])
-        least = LEAST_SHARE * float(size.max(initial=0.0))
+        least = LEAST_SHARE * float(_horizontal(force, self.line).max(initial=0.0))
         return read_only(resultant_height(self.force, self.moment, self.line, least))
 
     @cached_property
@@ -114,9 +112,12 @@ class ElementLoad:
 
     @cached_property
     def height_at_peak(self) -> float:
-        """Height of the resultant of the 50-ms mean where its horizontal force is greatest [m]; 0: none."""
+        """Height of the resultant of the 50-ms mean where its horizontal force is greatest [m]; 0: none.
+
+        Of a wall the force across its line counts. See :func:`resultant_height`.
+        """
         force, moment = self._mean
-        row = int(np.argmax(np.hypot(force[:, 0], force[:, 1])))
+        row = int(np.argmax(_horizontal(force, self.line)))
         return float(resultant_height(force, moment, self.line)[row])
 
     @cached_property
@@ -142,6 +143,13 @@ class ElementLoad:
         return f"ElementLoad({self.name!r}, {force:.4g} N, {moment:.4g} N m)"
 
 
+def _horizontal(force: Floats, line: Floats | None) -> Floats:
+    """Return the size of the horizontal force, of a wall of its part across the line, shape (n,) [N]."""
+    if line is None:
+        return np.asarray(np.hypot(force[:, 0], force[:, 1]))
+    return np.abs(force @ np.array([line[1], -line[0], 0.0]))
+
+
 def overturning(moment: Floats, line: Floats | None = None) -> Floats:
     """Return the magnitude of the horizontal moment, of a wall of its part about the line, shape (n,)."""
     if line is None:
@@ -157,8 +165,9 @@ def resultant_height(
     With F_h the horizontal force and z up: height = M . (z x F_h) / |F_h|^2. It is the height of the point of
     application where the force has no vertical part, or meets the vertical through the foot. Else the moment
     of the vertical force is in it, as it is in the overturning moment. It is 0 in rows where the size of F_h
-    is below ``LEAST_SHARE`` of its greatest value, and where there is none. It is 0, too, where the moment of
-    the vertical force would put it below the foot, as where a wheel stands on a toe.
+    is below ``LEAST_SHARE`` of its greatest value, and where there is none. It is 0, too, where the vertical
+    force is greater than F_h, as of a truck that lies on a barrier: its moment would put the height anywhere.
+    The same holds where it puts the height below the foot, as where a wheel stands on a toe.
 
     Parameters
     ----------
@@ -169,13 +178,14 @@ def resultant_height(
     least
         Size of F_h below which a row is 0 [N], in place of the share.
     """
+    size, vertical = _horizontal(force, line), np.abs(force[:, 2])
     if line is not None:
         across = np.array([line[1], -line[0], 0.0])
         force, moment = np.outer(force @ across, across), np.outer(moment @ line, line)
     x, y = force[:, 0], force[:, 1]
-    size = np.hypot(x, y)
     height = np.zeros(len(force))
     enough = size > (LEAST_SHARE * size.max(initial=0.0) if least is None else least)
+    enough &= vertical <= size
     turning = moment[:, 1] * x - moment[:, 0] * y
     height[enough] = turning[enough] / size[enough] ** 2
     return np.maximum(height, 0.0)
