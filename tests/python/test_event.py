@@ -341,9 +341,9 @@ def test_a_slow_vehicle_is_at_the_barrier_only_if_it_touches_it(
 def test_a_vehicle_that_turns_away_before_the_line_has_not_passed(
     share: float, outcome: str, duration: float | None
 ) -> None:
-    """A car beside a pole of 0.6 m still nears the line as it leaves, by 3 to 8 degrees, and its tyres turn it away.
+    """A car beside a pole still nears the line as it leaves, by 3 to 8 degrees. Its tyres turn it away.
 
-    Its mass centre comes within 0.9 m of the line at most. It was called "passed" from 0.9 of its half width on.
+    Its mass centre stays 0.9 m from the line. It was called "passed" from 0.9 of its half width on.
     """
     car = Vehicle.preset("passenger_car")
     result = Simulation(car, Barrier.pole(diameter=0.6), 14.0, 90.0, 0.9 * share, duration=duration).run()

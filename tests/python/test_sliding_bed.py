@@ -202,3 +202,14 @@ def test_a_bed_that_is_not_there_is_refused_by_line(tmp_path: Path, old: str, ne
     path.write_text(text.replace(old, new), encoding="utf-8")
     with pytest.raises(VehicleFileError, match=rf"truck.toml:\d+: {message}"):
         Vehicle.from_file(path)
+
+
+def test_a_checkpoint_of_a_bed_with_other_fixings_is_refused() -> None:
+    """Its joint was no part of what tells vehicles apart."""
+    truck = Vehicle.preset("cargo_truck", mesh_density=0.2)
+    weak, strong = (
+        Simulation(truck.with_sliding_bed(slide), Barrier.rigid_wall(), 10.0)
+        for slide in (WEAK, ((0.0, 5e5),))
+    )
+    with pytest.raises(ValueError, match="snapshot"):
+        strong.restore(weak.snapshot())

@@ -13,19 +13,23 @@ namespace birm3d {
 namespace {
 
 void add_to(Hash& hash, const Wheel& wheel) {
-    hash.add(wheel.center);
-    hash.add(wheel.radius);
-    if (std::isfinite(wheel.breakaway)) hash.add(wheel.breakaway), hash.add(wheel.travel);
-    if (wheel.steers()) hash.add(wheel.steering_time);
-    if (wheel.tread_radius > 0.0) hash.add(-wheel.tread_radius);  // no other number of a wheel is negative
-    if (wheel.camber_ratio > 0.0) hash.add(-1e3 - wheel.camber_ratio);  // nor is any wheel that large
-    if (wheel.rolling_resistance > 0.0) hash.add(-2e3 - wheel.rolling_resistance);
     const Suspension& suspension = wheel.suspension;
-    if (!suspension.springs()) return;
+    hash.add(wheel.center);
     for (const double number :
-         {suspension.stiffness, suspension.damping, suspension.at_rest, suspension.bump})
+         {wheel.radius, wheel.breakaway, wheel.travel, wheel.steering_time, wheel.tread_radius,
+          wheel.camber_ratio, wheel.rolling_resistance, suspension.stiffness, suspension.damping,
+          suspension.at_rest, suspension.bump, suspension.roll_ratio})
         hash.add(number);
-    if (suspension.roll_ratio < 1.0) hash.add(suspension.roll_ratio);
+}
+
+void add_to(Hash& hash, const Joint& joint) {
+    for (const double number : {static_cast<double>(joint.kind), static_cast<double>(joint.leading),
+                                static_cast<double>(joint.trailing), joint.roll_limit})
+        hash.add(number);
+    hash.add(joint.place_on_leading);
+    hash.add(joint.place_on_trailing);
+    for (const SlideKnot& knot : joint.slide)
+        hash.add(knot.slip), hash.add(knot.force);
 }
 
 void add_to(Hash& hash, const HalfSpace& plane) {
@@ -177,15 +181,11 @@ std::uint64_t Scene::fingerprint() const {
         }
         for (const Wheel& wheel : unit.wheels)
             add_to(hash, wheel);
+        for (const Box& box : unit.core)
+            hash.add(box.center), hash.add(box.half);
     }
-    for (const Joint& joint : vehicle->joints) {
-        hash.add(static_cast<double>(joint.kind));
-        hash.add(static_cast<double>(joint.leading));
-        hash.add(static_cast<double>(joint.trailing));
-        hash.add(joint.place_on_leading);
-        hash.add(joint.place_on_trailing);
-        hash.add(joint.roll_limit);
-    }
+    for (const Joint& joint : vehicle->joints)
+        add_to(hash, joint);
     if (barrier) add_to(hash, *barrier);
     return hash.value();
 }
