@@ -47,12 +47,7 @@ double require_within(const char* name, double value, double low, double high) {
     return value;
 }
 
-UnstableError::UnstableError(double time_step_, double limit_, double time_, const std::string& advice)
-    : std::runtime_error("time_step must be below the critical step " + to_text(limit_, 3) +
-                         " s that the trusses in contact allow at t = " + to_text(time_, 4) + " s, got " +
-                         to_text(time_step_) + " s; " + advice),
-      time_step(time_step_),
-      limit(limit_),
-      time(time_) {}
+UnstableError::UnstableError(const std::string& text, double time_step_, double limit_, double time_)
+    : std::runtime_error(text), time_step(time_step_), limit(limit_), time(time_) {}
 
 }  // namespace birm3d

@@ -164,7 +164,8 @@ void Simulation::fixed_step() {
     const double step = *scene_.settings.time_step;
     const double dt = std::min(step, remaining());
     const double passing = passing_step(scene_, state_, dt);
-    if (passing < dt) refuse_step(dt, passing);
+    if (passing < dt)
+        refuse_step(dt, passing, "in which nothing moves further than a quarter through an element");
     try_step(scene_, state_, dt, {}, work_->trial);
     double critical = work_->trial.critical_step;
     if (work_->trial.body_held()) {
@@ -176,19 +177,21 @@ void Simulation::fixed_step() {
             critical = std::min(critical, free.critical_step);
         }
     }
-    if (dt > critical) refuse_step(dt, critical);
+    if (dt > critical) refuse_step(dt, critical, "the critical step of the trusses in contact");
     accept_trial();
 }
 
-void Simulation::refuse_step(double dt, double critical) const {
+void Simulation::refuse_step(double dt, double limit, const std::string& meaning) const {
     Settings adaptive = scene_.settings;
     adaptive.time_step.reset();
     Simulation other(Scene(scene_.vehicle, scene_.barrier, scene_.approach, adaptive, scene_.duration));
     other.run([] {});
     const double would_do =
-        tolerance::advised_fraction * std::min(critical, other.state().statistics.least_critical_step);
-    throw UnstableError(dt, critical, state_.time,
-                        "a step of " + to_text(would_do, 3) + " s would do for the whole run");
+        tolerance::advised_fraction * std::min(limit, other.state().statistics.least_critical_step);
+    throw UnstableError("time_step must be below " + to_text(limit, 3) + " s, " + meaning +
+                            ", at t = " + to_text(state_.time, 4) + " s, got " + to_text(dt) +
+                            " s; a step of " + to_text(would_do, 3) + " s would do for the whole run",
+                        dt, limit, state_.time);
 }
 
 void Simulation::adaptive_step() {
@@ -196,8 +199,10 @@ void Simulation::adaptive_step() {
     double dt = search.first;
     for (;;) {
         if (dt < tolerance::shortest_step)
-            throw UnstableError(dt, tolerance::shortest_step, state_.time,
-                                "the scene is too stiff for any step worth taking");
+            throw UnstableError("the scene is too stiff at t = " + to_text(state_.time, 4) +
+                                    " s: steps would have to be shorter than " +
+                                    to_text(tolerance::shortest_step) + " s",
+                                dt, tolerance::shortest_step, state_.time);
         try_step(scene_, state_, dt, {.locate_impacts = true}, work_->trial);
         const double shorter = shorter_step(scene_, state_, work_->trial, search);
         if (!(shorter < dt)) break;

@@ -11,13 +11,13 @@ class InvalidArgument : public std::invalid_argument {
     using std::invalid_argument::invalid_argument;
 };
 
-// A fixed step lies beyond what the scene allows.
+// A fixed step lies beyond what the scene allows, or the scene allows no step worth taking.
 class UnstableError : public std::runtime_error {
   public:
-    UnstableError(double time_step, double limit, double time, const std::string& advice);
+    UnstableError(const std::string& text, double time_step, double limit, double time);
 
-    double time_step;  // s, the step asked for
-    double limit;      // s, the critical step at that instant
+    double time_step;  // s, the step that was to be taken
+    double limit;      // s, that of steps at that instant
     double time;       // s, when it happened
 };
 

@@ -82,7 +82,8 @@ class Simulation {
     void accept_trial();
     void adaptive_step();
     void fixed_step();
-    [[noreturn]] void refuse_step(double dt, double critical) const;
+    // `limit`: of steps (s); `meaning`: what the limit is.
+    [[noreturn]] void refuse_step(double dt, double limit, const std::string& meaning) const;
 
     Scene scene_;
     State state_;
