@@ -113,3 +113,16 @@ def test_a_zone_refuses_numbers_out_of_range() -> None:
         Zone(**law, breakaway=0.0, breakaway_travel=0.1)
     with pytest.raises(ValueError, match=r"breakaway_travel must be given beside breakaway, got None"):
         Zone(**law, breakaway=1e5)
+
+
+@pytest.mark.parametrize(("speed", "angle"), [(10.0, 40.0), (6.0, 75.0)])
+def test_what_gives_way_does_not_depend_on_the_steps(speed: float, angle: float) -> None:
+    """The load of a rigid wheel that touches down in a step grows without bound as the step gets shorter."""
+    truck = Vehicle.from_file(TRUCK.with_name("fitted_truck.toml"), mesh_density=0.5)
+    runs = [
+        Simulation(truck, Barrier.rigid_wall(), speed, angle, duration=1.0, settings=settings).run()
+        for settings in (Settings(), Settings(tolerance=1e-5), Settings(time_step=1e-4))
+    ]
+    assert len({run.statistics.wheels_given_way for run in runs}) == 1
+    yaw = [run.metrics["max_yaw"] for run in runs]
+    assert yaw == pytest.approx([yaw[0]] * 3, rel=0.05)

@@ -244,3 +244,28 @@ def test_a_post_that_comes_past_the_edge_of_a_side_is_the_same_by_any_step(name:
         for tolerance in (1e-3, 1e-5)
     ]
     np.testing.assert_allclose(loads[0], loads[1], rtol=0.02)
+
+
+def test_skin_on_the_ground_is_drawn_in_once_the_post_reaches_it() -> None:
+    """The underside of vehicle N, which touches the ground from the start, is 1 m behind its front.
+
+    The post once dragged it along from the start, as skin that was loaded: 20 % less force than without ground,
+    and 8 % more or less from one tolerance to the next.
+    """
+    forces = [
+        Simulation(
+            vehicle("fitted_n"),
+            Barrier.bollards(count=1, diameter=0.6, height=1.5, friction=0.0),
+            13.4,
+            duration=0.15,
+            settings=settings,
+        )
+        .run()
+        .metrics["peak_force_50ms"]
+        for settings in (
+            *(Settings(mu_tire=0.0, tolerance=tolerance) for tolerance in (1e-3, 1e-4, 1e-5)),
+            Settings(ground=False, gravity=0.0),
+        )
+    ]
+    assert forces[:3] == pytest.approx([forces[0]] * 3, rel=0.005)
+    assert forces[3] == pytest.approx(forces[0], rel=0.05)  # the ground holds the nose up

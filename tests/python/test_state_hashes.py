@@ -92,8 +92,8 @@ HASHES = {
     "car, corner of a planter": "2e81627afa5f7fcf",
     "pickup, end of a wall": "23f4c81f8048a6ce",
     "truck, bollards that yield": "f6dbbb5ac8c6c520",
-    "finite-element car, wall": "eead0b1cdd902759",
-    "finite-element truck, wall": "0063105ad3bcd3d3",
+    "finite-element car, wall": "5233689c179a6c3c",
+    "finite-element truck, wall": "1bb462c72d8cbebe",
 }
 
 
