@@ -249,8 +249,8 @@ def test_a_post_that_comes_past_the_edge_of_a_side_is_the_same_by_any_step(name:
 def test_skin_on_the_ground_is_drawn_in_once_the_post_reaches_it() -> None:
     """The underside of vehicle N, which touches the ground from the start, is 1 m behind its front.
 
-    The post once dragged it along from the start, as skin that was loaded: 20 % less force than without ground,
-    and 8 % more or less from one tolerance to the next.
+    The post once dragged it along from the start: 20 % less force than without ground, and 8 % more or less
+    from one tolerance to the next.
     """
     forces = [
         Simulation(

@@ -218,7 +218,10 @@ class Simulation:
         self._run_time = 0.0
 
     def state_hash(self) -> int:
-        """Return a 64-bit hash of the state: equal hashes mean equal bits."""
+        """Return a 64-bit hash of time, bodies, trusses, indentations and the sum of energies, bit by bit.
+
+        Equal hashes mean that these are equal. How steps go on also depends on loads before the last step.
+        """
         with self._core:
             return self._core.state_hash
 
