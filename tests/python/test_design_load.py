@@ -20,7 +20,10 @@ from one_truss import one_truss
 from scipy.signal import butter, filtfilt
 from tires import quick_to_steer
 
-NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "moment", "equivalent_static_force")
+NUMBERS = (
+    *("impulse", "peak_force", "force_50ms", "longitudinal_force_50ms", "height", "moment"),
+    *("equivalent_static_force", "equivalent_static_moment"),
+)
 
 
 def car() -> Vehicle:
@@ -100,6 +103,12 @@ def test_recomputed_from_the_histories(name: str) -> None:
         assert row.equivalent_static_force == pytest.approx(
             spring_force(load.force[1:] @ across, dt, period), rel=2e-3
         )
+        about = np.cross([0.0, 0.0, 1.0], across)  # the axis about which forces across turn the element
+        assert row.equivalent_static_moment == pytest.approx(
+            spring_force(load.moment[1:] @ about, dt, period), rel=2e-3
+        )
+        along = np.abs(line @ force).max()
+        assert row.longitudinal_force_50ms == pytest.approx(along, rel=1e-9, abs=1e-9 * level[at])
 
 
 def spring_force(load: np.ndarray, dt: float, period: float) -> float:
@@ -129,6 +138,38 @@ def test_exact_half_sine(period: float) -> None:
     assert row.height == pytest.approx(0.6, rel=1e-9)
     assert row.moment == pytest.approx(0.6 * row.force_50ms, rel=1e-9)
     assert row.equivalent_static_force == pytest.approx(peak * max(forced.max(), after), rel=2e-3)
+    assert row.equivalent_static_moment == pytest.approx(0.6 * row.equivalent_static_force, rel=1e-9)
+
+
+def test_static_force_and_static_moment_of_a_row_belong_together() -> None:
+    """The moment differs from force times height by the arms of the impact; a 50-ms mean is far from both."""
+    simulation = Simulation(car(), Barrier.bollards(count=3, spacing=1.3), 14.0)
+    loads = birm3d.design_load(simulation, natural_period=0.1, draws=8)
+    row = loads["bollard 2"]
+    static = row.design["equivalent_static_force"] * row.design["height"]
+    assert row.design["equivalent_static_moment"] == pytest.approx(static, rel=0.1)
+    assert row.design["moment"] < 0.8 * static
+    force, moment, arm = (
+        getattr(row, name) for name in ("equivalent_static_force", "equivalent_static_moment", "height")
+    )
+    assert moment == pytest.approx(force * arm, rel=0.05)
+    for text in (loads.summary(), loads.to_markdown(), loads._repr_html_()):
+        assert "design moment, 50-ms mean, no dynamic factor [kN m]" in text
+        assert "design equivalent static moment [kN m]" in text
+        assert f"{row.design['equivalent_static_moment'] / 1e3:,.0f} [{moment / 1e3:,.0f}; " in text
+
+
+def test_a_parapet_has_a_force_along_it() -> None:
+    """Friction on a sloped face: by Coulomb at most its coefficient times the force that presses."""
+    barrier = Barrier.jersey(segments=3, length=30.0)
+    result = Simulation(car(), barrier, 20.0, 25.0, barrier.station()).run()
+    loads = birm3d.design_load(result, natural_period=0.05)
+    row = loads.governing
+    assert 0.05 * row.force_50ms < row.longitudinal_force_50ms < 2.0 * barrier.friction * row.force_50ms
+    assert loads.longitudinal_force_50ms[row.index] == row.longitudinal_force_50ms
+    assert f"{row.longitudinal_force_50ms / 1e3:,.3g}" in loads.summary()
+    assert "50-ms force along the barrier [kN]" in loads.to_markdown()
+    assert loads.to_dataframe().loc[row.name, "longitudinal_force_50ms"] == row.longitudinal_force_50ms
 
 
 def test_turned_scene() -> None:

@@ -168,6 +168,10 @@ def test_design_loads_are_those_of_the_api(page: Page, result: Result, folder: P
     assert force > most.equivalent_static_force
     answer = dict(page.table("At a glance"))["What does its foundation have to carry?"]
     assert answer.startswith(f"{most.name}: design with an equivalent static force {force / 1e3:,.0f} kN")
+    static = most.design["equivalent_static_moment"] / 1e3
+    assert tidy(f"a 50-ms mean without dynamic factor; equivalent static moment {static:,.0f} kN m") in answer
+    assert "design moment, 50-ms mean, no dynamic factor [kN m]" in head
+    assert tidy("design equivalent static moment [kN m]") in head
     assert loads.caution in " ".join(" ".join(page.texts["p"]).split())  # per cent has a fixed space
     assert "The vehicle is heavy, and its force is computed lower" in loads.caution
     assert (folder / "design_loads.csv").read_text(encoding="utf-8").count("bollard") == len(loads)

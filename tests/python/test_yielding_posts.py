@@ -390,7 +390,7 @@ def test_the_equivalent_static_force_of_a_foundation_that_turns(car: Vehicle) ->
 
 
 def test_a_post_that_has_not_yielded_counts_as_elastic(car: Vehicle) -> None:
-    """Its force is that of a rigid post, and ductility is not spent; at most it is what makes it yield."""
+    """Its force is that of a rigid post, and ductility is not spent."""
     strong = Barrier.bollards(count=3, **TUBE | {"wall_thickness": 0.1})
     loads = [
         birm3d.design_load(
@@ -399,9 +399,36 @@ def test_a_post_that_has_not_yielded_counts_as_elastic(car: Vehicle) -> None:
         for barrier, mu in ((strong, 1.0), (strong, 3.0), (Barrier.bollards(count=3, **RIGID), 1.0))
     ]
     assert not any(row.has_yielded for row in loads)
-    assert loads[1].equivalent_static_force == loads[0].equivalent_static_force
-    rigid = loads[2].equivalent_static_force
-    assert loads[0].equivalent_static_force == pytest.approx(min(rigid, loads[0].yield_force), rel=1e-3)
+    for name in ("equivalent_static_force", "equivalent_static_moment"):
+        assert getattr(loads[1], name) == getattr(loads[0], name)
+        assert getattr(loads[0], name) == pytest.approx(getattr(loads[2], name), rel=1e-3)
+
+
+def test_an_elastic_force_above_what_a_post_resists_is_not_cut_off() -> None:
+    """It did not yield in the run: number and label are those of the elastic system, and that is said."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    sizes = {"count": 3, "diameter": 0.168, "height": 1.0, "spacing": 1.3}
+    runs = [
+        Simulation(car, Barrier.bollards(**sizes, **tube), units.mph(20)).run()
+        for tube in ({"wall_thickness": 0.014}, {})
+    ]
+    for period in (0.03, 0.1):
+        load, rigid = (birm3d.design_load(run, natural_period=period, draws=0) for run in runs)
+        row = load.governing
+        assert not row.has_yielded
+        assert row.exceeds_yield
+        moment = runs[0].scene.barrier.weaker.posts.plastic_moment
+        assert row.yield_force * row.height == pytest.approx(moment)
+        assert row.equivalent_static_force > row.yield_force
+        assert row.equivalent_static_force == pytest.approx(rigid.governing.equivalent_static_force, rel=1e-3)
+        assert load.spectrum([period])[0] == row.equivalent_static_force
+        assert "On bollard 2 the post does not yield in the scene" in load.caution
+        assert f"it resists {row.yield_force / 1e3:,.0f} kN" in load.caution
+        assert "A post that could yield and has not counts as elastic" in load.basis
+        assert f"elastic: more than the {row.yield_force / 1e3:,.0f} kN that the post resists" in made_by(
+            load
+        )
+        assert "counts as elastic" not in rigid.basis
 
 
 @pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")

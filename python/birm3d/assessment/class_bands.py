@@ -28,11 +28,15 @@ _OF_FORCE = ("height", "direction")  # where and in which direction the greatest
 
 _BLOWS = (
     "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes. The design "
-    "values of peak and equivalent static force rest on that blow and are too high."
+    "values of peak, equivalent static force and moment rest on that blow and are too high."
 )
 _BLOWS_OF_PEAKS = (
     "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes. The design "
     "values of peak force rest on that blow and are too high."
+)
+_BEYOND_YIELD = (
+    "With {n} of {all} vehicles of the class a post that does not yield in the run is asked for more than it "
+    "resists, as an elastic system."
 )
 _BELOW = (
     "On {elements}, {values} of this vehicle {verb} below the band: do not design with it. Most vehicles "
@@ -45,6 +49,8 @@ _ABOVE = (
 _NAMES = {
     **{name: name.replace("_", " ") for name in BANDED},
     "force_50ms": "50-ms force",
+    "longitudinal_force_50ms": "50-ms force along the barrier",
+    "moment": "50-ms moment",
 }
 _LEAST_SHARE = 0.01  # elements that carry less than this share of the greatest load are not mentioned
 _FAILED = "{n} of {all} vehicles of the class could not be run and are not in the bands."
@@ -157,6 +163,7 @@ def bands_of(rows: Sequence[ElementDesign], seen: Iterable[tuple[int, Seen | Non
     found: dict[int, list[list[ElementDesign]]] = {}
     failed: set[int] = set()
     struck: set[int] = set()
+    beyond: set[int] = set()
     for vehicle, one in seen:
         if one is None:
             failed.add(vehicle)
@@ -165,10 +172,16 @@ def bands_of(rows: Sequence[ElementDesign], seen: Iterable[tuple[int, Seen | Non
         found.setdefault(vehicle, []).append(designs)
         if blow:
             struck.add(vehicle)
+        if any(design.exceeds_yield for design in designs):
+            beyond.add(vehicle)
     whole = [runs for vehicle, runs in found.items() if vehicle not in failed]
     banded = tuple(_banded(row, [[run[i] for run in runs] for runs in whole]) for i, row in enumerate(rows))
     by_statics = all(row.has_yielded for row in banded if row.touched)
-    counts = ((_BLOWS_OF_PEAKS if by_statics else _BLOWS, len(struck)), (_FAILED, len(failed)))
+    counts = (
+        (_BLOWS_OF_PEAKS if by_statics else _BLOWS, len(struck)),
+        (_BEYOND_YIELD, len(beyond)),
+        (_FAILED, len(failed)),
+    )
     cautions = [text.format(n=n, all=vehicles) for text, n in counts if n]
     return Bands(banded, cautions + list(_of_outside(banded)))
 

@@ -45,10 +45,11 @@ _SLENDER = (
 )
 
 _ACTS = "On {elements} a load still acts when the run ends: it is taken as zero from there on."
-_ALONG = "On {elements} the force along the line is greater than that across it, which the table has."
+_ALONG = "On {elements} the force along the line is greater than that across it: design for both."
 _BLOW = (
     "On {elements} a crush zone is used up and the rigid body strikes, a blow of a few milliseconds. "
-    "The peak and the equivalent static force rest on it and are too high, most at short natural periods."
+    "The peak, the equivalent static force and its moment rest on it. They are too high, most at short "
+    "natural periods."
 )
 _TIPS = (
     "On {elements} the overturning moment exceeds the restoring one: the segment would begin to tip, which "
@@ -64,7 +65,7 @@ _LOW = (
     "The vehicle is heavy, and its force is computed lower than design tables have it: at a wall of 1.07 m "
     "(TL-5) it acts at 0.59 m, and AASHTO applies its design force at 1.07 m. In four finite-element runs of "
     "another truck the moment was 1.2 to 2.3 times that of the preset cargo truck. The design values do not "
-    "cover this. Use the greater of the design moment and the moment by your standard."
+    "cover this. Where the moment by your standard is greater, use that."
 )
 
 _LEAST_SHARE = 0.01  # elements that carry less than this share of the greatest load are not mentioned

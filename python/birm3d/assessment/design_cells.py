@@ -34,7 +34,8 @@ def load_cell(row: ElementDesign, name: str) -> str:
     text = load_text(name, row.design[name])
     if name not in row.band:
         return text
-    return f"{text} [{load_text(name, getattr(row, name))}; {_band(row, name)}]"
+    cell = f"{text} [{load_text(name, getattr(row, name))}; {_band(row, name)}]"
+    return "0" if cell == "0 [0; 0 to 0]" else cell
 
 
 def side_cell(row: ElementDesign, name: str) -> str:

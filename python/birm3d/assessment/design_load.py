@@ -25,7 +25,8 @@ from .design_caution import has_blow, merged, run_cautions
 from .design_plan import DesignPlan, design_plan, predicted_scene
 from .design_remarks import design_cautions
 from .design_table import DesignLoad, LoadScene
-from .element_design import ElementDesign, System, element_design, peak_filter
+from .element_demand import element_design
+from .element_design import ElementDesign, System, peak_filter
 from .element_envelope import envelope
 
 __all__ = [
@@ -77,14 +78,17 @@ def design_load(
 ) -> DesignLoad:
     """Return what each post, segment or panel of a barrier has to carry: a table for the structural engineer.
 
-    For each element: impulse, peak force (CFC 60), greatest 50-ms mean force with its height, design moment
-    at the foot, and the equivalent static force. With several scenes each value is the greatest of all, and
-    the table names the scene that the value of this vehicle comes from.
+    For each element: impulse, peak force (CFC 60), greatest 50-ms means of the force with its height, of the
+    force along the barrier and of the moment at the foot; equivalent static force and moment. With several
+    scenes each value is the greatest of all, and the table names the scene that the value of this vehicle
+    comes from.
 
     The equivalent static force is that of a system with one degree of freedom under the unfiltered load
     (Biggs, Introduction to Structural Dynamics, 1964). At ductility 1 it is m w^2 max|u|, the peak force
     times the dynamic load factor. Above, it is the resistance R of the elastic-plastic system for which
-    max|u| = ductility R / (m w^2). See :mod:`birm3d.assessment.oscillator`.
+    max|u| = ductility R / (m w^2). See :mod:`birm3d.assessment.oscillator`. The equivalent static moment is
+    the same of the moment about the foot, for a system that turns about it. A post that could yield and has
+    not counts as elastic.
 
     Of a post that yields in the run it is that of statics: the moment that the post resists over its arm. The
     moment is that of tube or foundation. The arm is the height of the 50-ms force above the point about which

@@ -33,6 +33,11 @@ _STATICS = (
     "Where a post yields, natural period and ductility do not change the equivalent static force: the run "
     "has spent the yielding already."
 )
+_BEYOND_YIELD = (
+    "On {element} the post does not yield in the scene of its equivalent static force. As an elastic system "
+    "it would: it resists {resists:,.0f} kN, and that force is {asked:,.0f} kN. Its foundation gets what the "
+    "post resists, with the upper bound of its strength, and no more than the elastic response."
+)
 _LOWEST = "Of several scenes, that force comes from the one with the shortest arm."
 
 _LOWER_SPEEDS = (
@@ -63,6 +68,10 @@ def design_cautions(
         yield _STATICS
         if len(load.scenes) > 1:
             yield _LOWEST
+    for row in load.rows:
+        if row.exceeds_yield:
+            asked, resists = row.equivalent_static_force / 1e3, row.yield_force / 1e3
+            yield _BEYOND_YIELD.format(element=row.name, resists=resists, asked=asked)
     if plan.period_is_assumed and not all(row.has_yielded for row in load.rows if row.touched):
         yield ASSUMED
         yield from _of_other_periods(load)

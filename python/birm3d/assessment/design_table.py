@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -19,6 +20,7 @@ from ..io.atomic_write import whole_file
 from ..scene.scene import Scene
 from .criteria import table_html, table_text
 from .design_cells import is_loaded, load_cell, side_cell
+from .element_demand import static_force
 from .element_design import (
     BANDED,
     DESIGNED,
@@ -27,7 +29,6 @@ from .element_design import (
     System,
     check_system,
     design_direction,
-    static_force,
 )
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ _DESIGN = (
     "About one vehicle of the class in ten exceeds the upper end. Errors of the model and partial factors "
     "are not in it. In square brackets: this vehicle; the band. Direction and DLF are those of this vehicle. "
 )
-_NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "direction", "moment", "equivalent_static_force")
+_NUMBERS = (*ENVELOPED[:4], "height", "direction", *ENVELOPED[4:])
 
 
 class LoadScene(NamedTuple):
@@ -180,6 +181,11 @@ class DesignLoad:
         return self._column("force_50ms")
 
     @property
+    def longitudinal_force_50ms(self) -> Floats:
+        """Greatest mean over 50 ms of the force along the barrier's line, its size [N]."""
+        return self._column("longitudinal_force_50ms")
+
+    @property
     def height(self) -> Floats:
         """Of ``force_50ms`` above the foot [m]."""
         return self._column("height")
@@ -191,13 +197,18 @@ class DesignLoad:
 
     @property
     def moment(self) -> Floats:
-        """Greatest 50-ms mean of the overturning moment about the foot [N m]."""
+        """Greatest 50-ms mean of the overturning moment about the foot, no dynamic load factor [N m]."""
         return self._column("moment")
 
     @property
     def equivalent_static_force(self) -> Floats:
         """For the natural period, ductility and damping, or of posts that yield by statics [N]."""
         return self._column("equivalent_static_force")
+
+    @property
+    def equivalent_static_moment(self) -> Floats:
+        """About the foot, of the same system; see ElementDesign [N m]."""
+        return self._column("equivalent_static_moment")
 
     @property
     def design(self) -> Mapping[str, Floats]:
@@ -224,11 +235,13 @@ class DesignLoad:
         damped = f", damping {self.damping:g}" if self.damping > 0.0 else ""
         return (
             f"{self._of_design()}Forces are horizontal, of walls across their line. Peak force: "
-            f"{self.peak_filter}. Force and moment: greatest 50-ms means; height is that of the 50-ms force "
-            "above the element's foot, where the moment is taken; direction that from the barrier's normal. "
-            f"{_of_moments(self.rows)}Equivalent static force, at this height and in this direction: system "
-            f"with one degree of freedom, {kind}, natural period {self.natural_period:g} s{damped}, "
-            f"unfiltered load.{_of_yielding(self.rows)}"
+            f"{self.peak_filter}. Forces and moment over 50 ms: greatest means, without a dynamic load "
+            "factor; height is that of the 50-ms force above the element's foot, where moments are taken; "
+            f"direction that from the barrier's normal. {_of_moments(self.rows)}Equivalent static force, at "
+            "this height and in this direction, and equivalent static moment: system with one degree of "
+            f"freedom, {kind}, natural period {self.natural_period:g} s{damped}, under the unfiltered "
+            "force and the unfiltered moment. Design a foot for these two together, or for a 50-ms force and "
+            f"moment by a standard that asks for them.{_of_yielding(self.rows)}"
         )
 
     def _of_design(self) -> str:
@@ -242,10 +255,12 @@ class DesignLoad:
             f"{design}impulse [kN s]",
             f"{design}peak force, {self.peak_filter} [kN]",
             f"{design}50-ms force [kN]",
+            f"{design}50-ms force along the barrier [kN]",
             f"{design}height [m]",
             "direction [deg]",
-            f"{design}moment [kN m]",
+            f"{design}moment, 50-ms mean, no dynamic factor [kN m]",
             f"{design}equivalent static force [kN]",
+            f"{design}equivalent static moment [kN m]",
             "DLF",
         )
 
@@ -256,14 +271,16 @@ class DesignLoad:
                 self._cell(row, "impulse"),
                 self._cell(row, "peak_force"),
                 self._cell(row, "force_50ms"),
+                self._cell(row, "longitudinal_force_50ms"),
                 load_cell(row, "height"),
                 side_cell(row, "direction"),
                 self._cell(row, "moment"),
                 self._cell(row, "equivalent_static_force"),
+                self._cell(row, "equivalent_static_moment"),
                 side_cell(row, "dynamic_load_factor"),
             )
             if is_loaded(row)
-            else (row.name, "0", "0", "0", "", "", "0", "0", "")
+            else (row.name, "0", "0", "0", "0", "", "", "0", "0", "0", "")
             for row in self.rows
         ]
 
@@ -315,7 +332,12 @@ class DesignLoad:
         direction = design_direction(row.load, self.normal)
         return np.array(
             [
-                static_force(row.load, direction, system._replace(natural_period=period), row.yield_force)
+                static_force(
+                    row.load,
+                    direction,
+                    system._replace(natural_period=period),
+                    yields=math.isfinite(row.yield_force),
+                )
                 for period in wanted.tolist()
             ]
         )
@@ -409,10 +431,10 @@ class DesignLoad:
 _VECTOR = ("impulse_x", "impulse_y", "impulse_z")
 _UNITS = {
     **dict.fromkeys(("impulse", *_VECTOR), "N s"),
-    **dict.fromkeys(("peak_force", "force_50ms", "equivalent_static_force"), "N"),
+    **dict.fromkeys(("peak_force", "force_50ms", "longitudinal_force_50ms", "equivalent_static_force"), "N"),
+    **dict.fromkeys(("moment", "equivalent_static_moment"), "N m"),
     "height": "m",
     "direction": "deg",
-    "moment": "N m",
 }
 _UNITS |= {f"{name}_{end}": _UNITS[name] for name in BANDED if name in _UNITS for end in ("low", "high")}
 _UNITS |= {f"{name}_design": _UNITS[name] for name in DESIGNED}
@@ -426,10 +448,15 @@ def _of_moments(rows: tuple[ElementDesign, ...]) -> str:
 
 
 def _of_yielding(rows: tuple[ElementDesign, ...]) -> str:
-    """Return how the static force of posts that have yielded is made; "" where there is none."""
-    if not any(row.has_yielded for row in rows):
-        return ""
-    return " Where a post yields it is the moment that the post resists over the arm of the 50-ms force."
+    """Return how the static force of posts that could yield is made; "" where there is none."""
+    text = ""
+    if any(row.has_yielded for row in rows):
+        text += (
+            " Where a post yields, the force is the moment that it resists over the arm of the 50-ms force."
+        )
+    if any(math.isfinite(row.yield_force) and not row.has_yielded for row in rows):
+        text += " A post that could yield and has not counts as elastic."
+    return text
 
 
 def _pipes(cells: tuple[str, ...] | list[str]) -> str:

@@ -1,4 +1,4 @@
-"""What one element of a barrier has to carry, from its load history."""
+"""What one element of a barrier has to carry: its values, and how they are read."""
 
 from __future__ import annotations
 
@@ -11,32 +11,38 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..barrier.yielding import Weaker
-from ..result.element_loads import ElementLoad, overturning, resultant_height
+from ..result.element_loads import ElementLoad
 from ..result.result import Result
 from ..scene.scene import Scene
-from ..signals.filters import cfc, moving_average
+from ..signals.filters import moving_average
 from ..simulation.simulation import run_scene
-from .oscillator import LEAST_INTERVALS, resistance
+from .oscillator import LEAST_INTERVALS
 
 __all__ = [
     "BANDED",
     "DESIGNED",
     "ENVELOPED",
+    "WINDOW",
     "ElementDesign",
     "System",
     "check_system",
     "degrees_between",
     "design_direction",
-    "element_design",
     "lateral_level",
     "peak_filter",
-    "static_force",
 ]
 
 Floats = npt.NDArray[np.float64]
 
-ENVELOPED = ("impulse", "peak_force", "force_50ms", "moment", "equivalent_static_force")
+ENVELOPED = (
+    "impulse",
+    "peak_force",
+    "force_50ms",
+    "longitudinal_force_50ms",
+    "moment",
+    "equivalent_static_force",
+    "equivalent_static_moment",
+)
 """Values of which the greatest over all scenes counts, each from a scene of its own."""
 
 DESIGNED = (*ENVELOPED, "height")
@@ -47,8 +53,8 @@ BANDED = (*DESIGNED, "direction", "dynamic_load_factor")
 
 _CLASS = 60.0
 _MOST_DUCTILITY = 100.0
-_WINDOW = 0.05  # s
-_MOST_OF_ONE_PULSE = 2.0  # no single pulse has a greater dynamic load factor
+WINDOW = 0.05
+"""Over which 50-ms means are taken [s]."""
 
 
 class System(NamedTuple):
@@ -82,18 +88,25 @@ class ElementDesign:
         interval is too long for it.
     force_50ms : float
         Greatest mean over 50 ms [N].
+    longitudinal_force_50ms : float
+        Greatest mean over 50 ms of the horizontal force along the barrier's line, its size either way [N].
     height : float
         Of ``force_50ms`` above the foot [m]; 0 where it has none, see :class:`birm3d.ElementLoad`.
     direction : float
         Of ``force_50ms`` from the barrier's normal, positive to the left seen along it [deg].
     moment : float
-        Greatest 50-ms mean of the overturning moment about the foot, at ground level [N m].
+        Greatest 50-ms mean of the overturning moment about the foot, at ground level, without a dynamic load
+        factor [N m].
     equivalent_static_force : float
         Static force that asks as much of a system of the given period, ductility and damping as the
         unfiltered load along ``direction`` [N]; it acts at ``height``. Of a post that has yielded it is
         ``yield_force``, or twice ``peak_force`` if that is less. Of one that could yield and has not, the
-        system is elastic, and the force at most ``yield_force``. The height of an envelope is that of its
-        greatest ``force_50ms``, perhaps of another scene: take ``moment`` there, or the row of one scene.
+        system is elastic; see ``exceeds_yield``.
+    equivalent_static_moment : float
+        Static moment about the foot that asks as much of the same system as the unfiltered overturning
+        moment [N m]: what the foot gets together with ``equivalent_static_force``. An element that turns
+        about its foot is driven by that moment. So it is exact for one, where the force times ``height`` has
+        one arm for all of the impact. Of a post that has yielded it is the force times ``height``.
     yield_force : float
         Of posts that yield: the moment that resists over the height of the 50-ms force above the point about
         which the post turns, in the scene of ``equivalent_static_force`` [N]. Infinite of all others.
@@ -116,10 +129,12 @@ class ElementDesign:
     impulse_vector: Floats = field(default_factory=lambda: np.zeros(3))
     peak_force: float = 0.0
     force_50ms: float = 0.0
+    longitudinal_force_50ms: float = 0.0
     height: float = 0.0
     direction: float = 0.0
     moment: float = 0.0
     equivalent_static_force: float = 0.0
+    equivalent_static_moment: float = 0.0
     yield_force: float = math.inf
     has_yielded: bool = False
     scene: Mapping[str, int] = field(default_factory=dict)
@@ -143,6 +158,15 @@ class ElementDesign:
         """``equivalent_static_force`` over ``peak_force``; 0 without load."""
         return self.equivalent_static_force / self.peak_force if self.peak_force > 0.0 else 0.0
 
+    @property
+    def exceeds_yield(self) -> bool:
+        """Whether a post that has not yielded would yield as the elastic system of the static force.
+
+        It resists ``yield_force``. The equivalent static force is greater: it is what a stronger one would
+        pass on to its foundation.
+        """
+        return not self.has_yielded and self.equivalent_static_force > self.yield_force
+
     @cached_property
     def load(self) -> ElementLoad | None:
         """Histories in the scene of ``equivalent_static_force``; ``None`` if nothing touches it there.
@@ -160,22 +184,23 @@ class ElementDesign:
             "element": self.name,
             "impulse": self.impulse,
             "impulse_vector": self.impulse_vector.tolist(),
-            **{name: getattr(self, name) for name in ("peak_force", "force_50ms", "height", "direction")},
-            **{name: getattr(self, name) for name in ("moment", "equivalent_static_force")},
-            "dynamic_load_factor": self.dynamic_load_factor,
+            **{name: getattr(self, name) for name in ENVELOPED if name != "impulse"},
+            **{name: getattr(self, name) for name in ("height", "direction", "dynamic_load_factor")},
             "has_yielded": self.has_yielded,
+            "exceeds_yield": self.exceeds_yield,
             "scene": dict(self.scene),
             "band": {name: list(ends) for name, ends in self.band.items()},
             "design": dict(self.design),
         }
 
     def __repr__(self) -> str:
-        force = self.design["equivalent_static_force"]
-        design = f"; design: {force:.4g} N, {self.design['moment']:.4g} N m" if self.band else ""
+        force, moment = (self.design[name] for name in ENVELOPED[-2:])
+        design = f"; design: {force:.4g} N, {moment:.4g} N m" if self.band else ""
         return (
             f"ElementDesign({self.name!r}, force_50ms={self.force_50ms:.4g} N at {self.height:.2f} m, "
             f"moment={self.moment:.4g} N m, "
-            f"equivalent_static_force={self.equivalent_static_force:.4g} N{design})"
+            f"equivalent_static_force={self.equivalent_static_force:.4g} N, "
+            f"equivalent_static_moment={self.equivalent_static_moment:.4g} N m{design})"
         )
 
 
@@ -211,72 +236,10 @@ def design_direction(load: ElementLoad, normal: Floats) -> Floats:
     """
     if load.line is not None:
         return normal
-    mean = moving_average(load.force[:, :2], _WINDOW, load.interval)
+    mean = moving_average(load.force[:, :2], WINDOW, load.interval)
     x, y = mean[int(np.argmax(np.hypot(*mean.T)))]
     size = math.hypot(x, y)
     return np.array([x / size, y / size, 0.0]) if size > 0.0 else normal
-
-
-def element_design(
-    load: ElementLoad,
-    normal: Floats,
-    system: System,
-    separation: float = math.inf,
-    weaker: Weaker | None = None,
-    has_yielded: bool = False,
-) -> ElementDesign:
-    """Return what an element has to carry in one scene; ``normal`` is that into the barrier, system in SI.
-
-    The impulse is that up to the time of ``separation`` [s]. ``weaker``: what gives way of posts that yield;
-    ``has_yielded``: whether this one does.
-    """
-    if not load.touched:
-        return ElementDesign(load.index, load.name)
-    direction = design_direction(load, normal)
-    force = moving_average(load.force, _WINDOW, load.interval)
-    moment = moving_average(load.moment, _WINDOW, load.interval)
-    level = lateral_level(force, load, normal)
-    row = int(np.argmax(level))
-    filtered = (
-        load.force if peak_filter(load.interval) == "unfiltered" else cfc(load.force, 60, load.interval)
-    )
-    # The first row is the mean over the second one's interval.
-    rows = math.ceil(min(separation / load.interval, len(load.force)))
-    impulse = load.interval * load.force[1 : rows + 1].sum(axis=0)
-    height = float(resultant_height(force, moment, load.line)[row])
-    peak = float(lateral_level(filtered, load, normal).max())
-    most = math.inf if weaker is None else weaker.greatest_load(height)
-    return ElementDesign(
-        load.index,
-        load.name,
-        impulse=float(impulse @ normal),
-        impulse_vector=impulse,
-        peak_force=peak,
-        force_50ms=float(level[row]),
-        height=height,
-        direction=degrees_between(normal, direction),
-        moment=float(overturning(moment, load.line).max()),
-        equivalent_static_force=(
-            min(most, _MOST_OF_ONE_PULSE * peak)
-            if has_yielded
-            else static_force(load, direction, system, most)
-        ),
-        yield_force=most,
-        has_yielded=has_yielded,
-        touched=True,
-    )
-
-
-def static_force(load: ElementLoad, direction: Floats, system: System, yield_force: float) -> float:
-    """Return the equivalent static force of an element that has not yielded [N].
-
-    Above a finite ``yield_force`` [N] it would yield: then the system is elastic, and that force is the most.
-    """
-    ductility = system.ductility if yield_force == math.inf else 1.0
-    force = resistance(
-        load.force[1:] @ direction, load.interval, system.natural_period, ductility, system.damping
-    )
-    return min(force, yield_force)
 
 
 def lateral_level(force: Floats, load: ElementLoad, normal: Floats) -> Floats:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from ..assessment.design_remarks import ASSUMED, greatest_of_periods
 from ..assessment.design_table import DesignLoad
 from ..assessment.element_design import ElementDesign
@@ -10,10 +12,21 @@ __all__ = ["band_of_design", "made_by"]
 
 
 def made_by(loads: DesignLoad) -> str:
-    """Return what the equivalent static force of the governing element is made from."""
-    if loads.governing.has_yielded:
-        return "from the moment that the post resists; what is stronger than given asks for more"
-    return f"natural period {loads.natural_period:g} s{_assumed(loads)}, ductility {loads.ductility:g}"
+    """Return the moment of the equivalent static force of the governing element, and what both are made from.
+
+    It follows the 50-ms moment in a line, and says that this has no dynamic factor.
+    """
+    row = loads.governing
+    moment = row.design["equivalent_static_moment"] / 1e3
+    moments = f"a 50-ms mean without dynamic factor; equivalent static moment {moment:,.0f} kN m"
+    if row.has_yielded:
+        return f"{moments}, from the moment that the post resists; what is stronger than given asks for more"
+    period = f"{moments}, natural period {loads.natural_period:g} s{_assumed(loads)}"
+    if not math.isfinite(row.yield_force):
+        return f"{period}, ductility {loads.ductility:g}"
+    if not row.exceeds_yield:
+        return f"{period}, elastic"
+    return f"{period}, elastic: more than the {row.yield_force / 1e3:,.0f} kN that the post resists"
 
 
 def _assumed(loads: DesignLoad) -> str:
