@@ -6,9 +6,11 @@ import csv
 import re
 from pathlib import Path
 
+import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, LoadMap, Result, Settings, Simulation, Vehicle, scenes
+from birm3d.result.face_loads import face_steps
 
 
 @pytest.fixture(scope="module")
@@ -162,6 +164,28 @@ def test_the_load_on_a_slope_is_where_it_touches() -> None:
     low = float((block.nodes[:, 2] + result.position[:, 2].min()).min())
     assert cells.impulse[cells.height[1:] < low - 0.05].sum() <= 1e-9 * cells.impulse.sum()
     assert cells.impulse.sum() == pytest.approx(block.mass * (4.0 - result.velocity[-1, 0]), rel=1e-3)
+
+
+def test_no_load_is_below_the_ground() -> None:
+    """Wheels on the toe of a low wall: sums and mean height stay those of the elements' loads."""
+    barrier = Barrier.jersey(profile="f_shape", height=0.81, length=60.0, segments=15)
+    result = birm3d.test_matrix("EN 1317 TB81", barrier=barrier)[0].run()
+    cells = result.load_map()
+    assert cells.height[0] == 0.0
+    assert not cells.outside.any()
+    front = barrier.load_front()
+    assert all((step.height >= 0.0).all() for step in face_steps(result, front))
+    across = np.sum([load.force @ front.across for load in result.element_loads], axis=0)
+    assert np.abs(cells.resultant - across).max() < 1e-9 * across.max()
+    moment = sum(
+        float((load.moment @ front.line + front.lever * load.force[:, 2])[1:].sum())
+        for load in result.element_loads
+    )
+    middles = 0.5 * (cells.height[1:] + cells.height[:-1])
+    found = cells.impulse.sum(axis=1) @ middles / cells.impulse.sum()
+    assert found == pytest.approx(moment / across[1:].sum(), abs=0.02)
+    wide = result.load_map(height=[-0.5, 0.0, 0.81])
+    assert not wide.impulse[0].any()
 
 
 def _cube() -> tuple[list[list[float]], list[list[int]]]:

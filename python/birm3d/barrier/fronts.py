@@ -100,7 +100,7 @@ class SlopedFront(Front):
         pressing = push @ self.across * normal_across + push[:, 2] * normal_up
         here = (np.abs(off) <= _NEAR) & (np.abs(along) <= self.half_width + _NEAR) & (pressing > 0.0)
         here &= (height <= self.top + _NEAR) & (height >= level[0] - _NEAR)
-        return along[here], height[here], (pressing * normal_across)[here]
+        return along[here], np.maximum(height[here], level[0]), (pressing * normal_across)[here]
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from ..units import Quantity, si
 from .barrier_fronts import front_of
 from .element_loads import element_loads
 from .face_grid import USUAL_CELL, cells_of, face_grid, forces_of_cells
-from .face_loads import SPREAD, FaceStep, face_steps
+from .face_loads import SPREAD, FaceStep, face_steps, lowest_load
 from .load_map import LoadMap
 from .record import RunRecord
 
@@ -42,6 +42,9 @@ def load_map(
     Of a sloped face the force across the line counts, not that square to the face. Of posts in one row each
     has a column of cells; a node's force is on the nearest post, at the node's height, and the column is
     scaled to the post's own force.
+
+    No load is below the ground: one whose moments put it there, as of a wheel on a toe, is at the foot. Forces
+    are not changed by that, only their moment about the foot.
 
     Parameters
     ----------
@@ -137,6 +140,8 @@ def _completed(
             (p.min(), p.max()) if len(p) else (e[0], e[-1])
             for p, e in zip((all_y, all_z), edges, strict=True)
         ]
+        # Tyres may touch below all nodes, but not below the ground.
+        limits[1] = (max(lowest_load(result), min(limits[1][0], 0.0)), limits[1][1])
         along, height = (np.clip(turned[:, k], *limits[k]) for k in range(2))
         height = np.minimum(height, np.nextafter(front.top, 0.0))
         np.add.at(cells, (alone, cells_of(along, height, edges)), rest[alone])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -12,13 +13,18 @@ from ..barrier.fronts import Front
 from ..vehicle.unit_shapes import UnitShape, unit_shapes
 from .record import RunRecord
 
-__all__ = ["SPREAD", "FaceStep", "face_steps"]
+__all__ = ["SPREAD", "FaceStep", "face_steps", "lowest_load"]
 
 Floats = npt.NDArray[np.float64]
 
 SPREAD = 0.0125
 """Four quarters of a node's force act so far from it, along and up [m]."""
 _MOST_INSTANTS = 800  # until the last contact; in long contacts not at each step's end
+
+
+def lowest_load(result: RunRecord) -> float:
+    """Return the least height of a load [m]: that of the ground, if there is one."""
+    return 0.0 if result.scene.settings.ground else -math.inf
 
 
 class FaceStep(NamedTuple):
@@ -46,7 +52,7 @@ def face_steps(result: RunRecord, front: Front) -> list[FaceStep]:
             continue
         pressed = [_pressed(core, unit, shape, front) for unit, shape in enumerate(shapes)]
         along, height, force = (np.concatenate(column) for column in zip(*pressed, strict=True))
-        steps.append(FaceStep(core.time, along, height, force))
+        steps.append(FaceStep(core.time, along, np.maximum(height, lowest_load(result)), force))
     if core.state_hash != result.state_hash:
         raise ValueError(
             f"a load map needs a scene that runs the same way again: the result ended in state "
