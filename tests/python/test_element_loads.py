@@ -236,5 +236,8 @@ def test_peaks_are_shown_after_cfc_60(row: Result) -> None:
         smooth = np.column_stack([cfc(load.force[:, i], 60, load.interval) for i in range(3)])
         assert load.peak_force_cfc60 == pytest.approx(np.sqrt((smooth**2).sum(axis=1)).max(), rel=1e-12)
     touched = [load for load in row.element_loads if load.touched]
-    shown = {cells[0]: cells[ELEMENT_COLUMNS.index("peak force, CFC 60 [kN]")] for cells in element_rows(row)}
+    shown = {
+        cells[0]: cells[ELEMENT_COLUMNS.index("whole force, peak, CFC 60 [kN]")]
+        for cells in element_rows(row)
+    }
     assert shown == {load.name: f"{load.peak_force_cfc60 / 1e3:.0f}" for load in touched}

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Simulation, Vehicle
+from birm3d.base.shown_numbers import kilo_number
 from birm3d.filters import cfc, moving_average
+from birm3d.result.summary import ELEMENT_COLUMNS, element_rows
 
 OLD = Path(__file__).parents[1] / "data" / "results" / "bollards_0_1_0.npz"
 
@@ -90,3 +93,31 @@ def test_a_file_of_version_0_1_0_gets_the_component() -> None:
     assert loaded.sum_of_contact_forces.max() > 1.4 * component.max()
     # Its metrics are as they were then, when the name stood for the sum.
     assert loaded.metrics["peak_normal_force"] == pytest.approx(2.904e6, rel=1e-3)
+
+
+def test_reports_say_which_force_they_show() -> None:
+    """A truck along a sloped face: the whole force is greater than its part across the line."""
+    truck = Vehicle.preset("cargo_truck", mesh_density=0.3)
+    result = Simulation(truck, Barrier.jersey(), "60 km/h", 15.0).run()
+    (load,) = result.element_loads
+    whole, lateral = load.peak_force_50ms, load.peak_lateral_force_50ms
+    assert lateral == pytest.approx(result.metrics["peak_force_50ms"], rel=1e-9)
+    assert lateral == pytest.approx(birm3d.design_load(result, draws=0).governing.force_50ms, rel=1e-9)
+    assert whole > 1.02 * lateral
+    told = f"of the whole force {whole / 1e3:,.0f} kN at {load.height_at_peak:.2f} m, of its part across the "
+    assert told + f"line {lateral / 1e3:,.0f} kN" in result.report()
+    assert not re.search(r"\de\+\d", result.report())
+    row = dict(zip(ELEMENT_COLUMNS, *element_rows(result), strict=True))
+    assert row["whole force, 50-ms mean [kN]"] == f"{whole / 1e3:.0f}"
+    assert row["lateral force, 50-ms mean [kN]"] == f"{lateral / 1e3:.0f}"
+
+
+def test_a_post_has_the_horizontal_part(truck: Result) -> None:
+    (load,) = (load for load in truck.element_loads if load.touched)
+    mean = moving_average(load.force, 0.05, load.interval)
+    assert load.peak_lateral_force_50ms == pytest.approx(np.hypot(mean[:, 0], mean[:, 1]).max(), rel=1e-12)
+    assert "of its horizontal part" in truck.report()
+
+
+def test_loads_have_no_power_of_ten() -> None:
+    assert [kilo_number(value) for value in (1.0383e6, 9.96e4, 7.4, 0.0)] == ["1,038", "99.6", "0.0074", "0"]

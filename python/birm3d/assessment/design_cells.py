@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..base.shown_numbers import kilo_number
 from .criteria import without_sign_of_zero
 from .element_design import DESIGNED, ElementDesign
 
@@ -20,10 +21,7 @@ def load_text(name: str, value: float) -> str:
     """Return a value as the table prints it, in kN, kN m, kN s, m or deg, by its name."""
     if name in _FORMS:
         return without_sign_of_zero(_FORMS[name].format(value))
-    kilo = value / 1e3
-    if abs(kilo) < _SHOWN:
-        return "0"
-    return f"{kilo:,.0f}" if abs(kilo) >= 100.0 else f"{kilo:.3g}"
+    return "0" if abs(value) < 1e3 * _SHOWN else kilo_number(value)
 
 
 def load_cell(row: ElementDesign, name: str) -> str:

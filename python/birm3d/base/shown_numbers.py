@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["plain_number", "shown_unit", "shown_value"]
+__all__ = ["kilo_number", "plain_number", "shown_unit", "shown_value"]
 
 _SHOWN_UNITS = {
     "N": (1e3, "kN"),
@@ -31,6 +31,12 @@ def plain_number(value: float, digits: int = 4) -> str:
     rounded = float(text)
     decimals = max(0, digits - 1 - math.floor(math.log10(abs(rounded))))
     return f"{rounded:,.{decimals}f}"
+
+
+def kilo_number(value: float) -> str:
+    """Return a load in thousands of its SI unit, whole from 100 on: 1,038,300 N is ``"1,038"``."""
+    kilo = value / 1e3
+    return f"{kilo:,.0f}" if abs(kilo) >= 100.0 else f"{kilo:.3g}"
 
 
 def shown_value(value: float, unit: str, digits: int = 4) -> str:

@@ -39,8 +39,9 @@ _FREE = (
 )
 
 _WHOLE_FORCE = (
-    "Forces are magnitudes of the whole force, its vertical part included; those of the design loads are "
-    "horizontal. Each greatest value is of an instant of its own: a moment is not a force times its height."
+    "Whole forces have their parts up and along the line. The lateral force is horizontal, of walls across "
+    "their line; design loads have this one. Each greatest value is of an instant of its own: a moment is "
+    "not a force times its height."
 )
 
 
@@ -105,9 +106,10 @@ def loads_csv(result: Result) -> bytes:
     """Return the loads as a file, SI, all digits."""
     names = (
         *("peak_force", "peak_force_50ms", "height_at_peak"),
-        *("peak_overturning_moment", "peak_overturning_moment_50ms", "peak_force_cfc60"),
+        *("peak_overturning_moment", "peak_overturning_moment_50ms"),
+        *("peak_force_cfc60", "peak_lateral_force_50ms"),
     )
-    units = ("N", "N", "m", "N m", "N m", "N")
+    units = ("N", "N", "m", "N m", "N m", "N", "N")
     head = ["element", *(f"{name} [{unit}]" for name, unit in zip(names, units, strict=True))]
     rows = [
         [load.name, *(repr(getattr(load, name)) for name in names)]

@@ -43,8 +43,8 @@ def load_map(
     has a column of cells; a node's force is on the nearest post, at the node's height, and the column is
     scaled to the post's own force.
 
-    No load is below the ground: one whose moments put it there, as of a wheel on a toe, is at the foot. Forces
-    are not changed by that, only their moment about the foot.
+    No load is below the ground: one whose moments put it there, as of a wheel on a toe, is at the foot. The
+    force stays, its moment about the foot is lost.
 
     Parameters
     ----------

@@ -107,8 +107,24 @@ class ElementLoad:
 
     @cached_property
     def peak_force_50ms(self) -> float:
-        """Greatest magnitude of the mean force vector over 50 ms [N]."""
+        """Greatest magnitude of the mean vector of the whole force over 50 ms [N]."""
         return float(np.linalg.norm(self._mean[0], axis=1).max())
+
+    @property
+    def lateral_part(self) -> str:
+        """What part of the force loads the element sideways: of a wall that across its line, in words."""
+        return "horizontal part" if self.line is None else "part across the line"
+
+    @cached_property
+    def peak_lateral_force_50ms(self) -> float:
+        """Greatest mean over 50 ms of the horizontal force, of a wall of its part across the line [N].
+
+        Design loads have this force. The whole one, with its parts up and along the line, is greater.
+        """
+        force = self._mean[0][:, :2]
+        if self.line is not None:
+            return float(np.abs(force @ np.array([self.line[1], -self.line[0]])).max())
+        return float(np.hypot(force[:, 0], force[:, 1]).max())
 
     @cached_property
     def height_at_peak(self) -> float:

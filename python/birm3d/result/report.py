@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from .. import units
 from ..barrier.text import barrier_text
+from ..base.shown_numbers import kilo_number
 from ..scene.text import overlap_text
 from ..vehicle.joint import LONGEST_SLIP
 from ..vehicle.title import vehicle_text
@@ -69,7 +70,7 @@ def report(result: RunAnalysis) -> str:
     if vehicle.joint is not None:
         lines.append(
             f"  {vehicle.joint.kind}: peak 50-ms mean of the force "
-            f"{metrics['peak_joint_force_50ms'] / 1e3:.3g} kN, greatest articulation angle "
+            f"{kilo_number(metrics['peak_joint_force_50ms'])} kN, greatest articulation angle "
             f"{metrics['max_articulation_angle']:.1f} deg{_fold_text(metrics['max_articulation_angle'])}"
             + (_slip_text(metrics["bed_slip"]) if vehicle.slides else "")
         )
@@ -80,9 +81,10 @@ def report(result: RunAnalysis) -> str:
         )
     for load in touched_elements(result.element_loads):
         lines.append(
-            f"  {load.name}: peak 50-ms mean of the force {load.peak_force_50ms / 1e3:.3g} kN at "
-            f"{load.height_at_peak:.2f} m, of the overturning moment "
-            f"{load.peak_overturning_moment_50ms / 1e3:.3g} kN m"
+            f"  {load.name}: peak 50-ms mean of the whole force {kilo_number(load.peak_force_50ms)} kN at "
+            f"{load.height_at_peak:.2f} m, of its {load.lateral_part} "
+            f"{kilo_number(load.peak_lateral_force_50ms)} kN, of the overturning moment "
+            f"{kilo_number(load.peak_overturning_moment_50ms)} kN m"
         )
     lines += [
         f"  {_NO_BAND}",

@@ -24,9 +24,10 @@ __all__ = [
 
 ELEMENT_COLUMNS = (
     "element",
-    "peak force, CFC 60 [kN]",
-    "50-ms mean [kN]",
+    "whole force, peak, CFC 60 [kN]",
+    "whole force, 50-ms mean [kN]",
     "height then [m]",
+    "lateral force, 50-ms mean [kN]",
     "overturning moment, 50-ms mean [kN m]",
 )
 """Of :func:`element_rows`."""
@@ -74,6 +75,7 @@ def element_rows(result: RunAnalysis) -> list[tuple[str, ...]]:
             f"{load.peak_force_cfc60 / 1e3:.0f}",
             f"{load.peak_force_50ms / 1e3:.0f}",
             f"{load.height_at_peak:.2f}" if load.height_at_peak > 0.0 else "–",
+            f"{load.peak_lateral_force_50ms / 1e3:.0f}",
             f"{load.peak_overturning_moment_50ms / 1e3:.0f}",
         )
         for load in touched_elements(result.element_loads)
@@ -84,7 +86,7 @@ def elements_in_si(result: RunAnalysis) -> list[dict[str, str | float]]:
     """Return the loads on the elements that were touched by name, SI."""
     numbers = (
         *("peak_force", "peak_force_50ms", "height_at_peak"),
-        *("peak_overturning_moment", "peak_overturning_moment_50ms"),
+        *("peak_overturning_moment", "peak_overturning_moment_50ms", "peak_lateral_force_50ms"),
     )
     return [
         {"name": load.name, **{number: getattr(load, number) for number in numbers}}
