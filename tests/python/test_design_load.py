@@ -582,6 +582,10 @@ def test_a_panel_has_the_number_of_the_table(envelope: DesignLoad) -> None:
         else:
             assert f"50-ms mean in scene {row.scene[name]}, {number}" in labels
             assert not any(text.endswith(unit) for text in texts)
+            level = getattr(row, name) / 1e3  # a line of another scene says nothing beside these curves
+            assert not any(list(line.get_ydata())[:2] == [level, level] for line in axes.get_lines())
+    static = f"equivalent static, {row.equivalent_static_moment / 1e3:,.0f}"
+    assert any(text.get_text().startswith(static) for text in panels[2].get_legend().get_texts())
 
 
 @pytest.mark.parametrize(

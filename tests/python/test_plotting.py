@@ -27,6 +27,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from matplotlib.text import Text
 from scipy.spatial import ConvexHull
 
 
@@ -435,6 +436,29 @@ def test_loads_on_elements_end_and_have_peaks() -> None:
     assert moment.texts[0].get_text().endswith("kN m")
     assert text.get_position()[1] > greatest.max()
     assert force.get_ylim()[1] > text.get_position()[1]
+
+
+def test_many_elements_leave_the_panels_their_width() -> None:
+    """The legend of nine segments was wider than the figure, which took the width from the panels."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.3)
+    wall = Barrier.jersey(length=18.0, segments=24)
+    result = Simulation(car, wall, 28.0, 20.0, impact_offset=-6.0, duration=0.8).run()
+    touched = [load.name for load in result.element_loads if load.touched]
+    assert len(touched) > 8
+    figure = result.plot_elements()
+    figure.savefig(BytesIO(), format="png")  # lays the panels out
+    force, _, moment = figure.get_axes()
+    assert force.get_position().width > 0.8
+    legend = force.get_legend()
+    assert legend is not None
+    assert legend.get_window_extent().x1 <= figure.bbox.width
+    for axes in (force, moment):
+        boxes = [Text.get_window_extent(text) for text in axes.texts]  # without their lines
+        assert len(boxes) == 3
+        assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+    lines = force.get_lines()
+    assert lines[0].get_color() == lines[8].get_color()
+    assert lines[0].get_linestyle() != lines[8].get_linestyle()
 
 
 @pytest.mark.parametrize(("first", "descend"), [(20.0, True), (80.0, False)])

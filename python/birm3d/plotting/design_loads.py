@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from ..result.element_loads import overturning
 from ..signals.filters import moving_average
 from .blows import name_cut_peaks, readable_level
 from .figure import new_figure
-from .style import BLUE, DASH_DOT, DASHED, DOTTED, GREEN, ORANGE, RED, filtered, legend, prepare, wrapped
+from .style import BLUE, DASH_DOT, DASHED, GREEN, ORANGE, RED, filtered, legend, prepare, wrapped
 
 if TYPE_CHECKING:
     from ..assessment.design_table import DesignLoad
@@ -38,9 +39,9 @@ def plot_design_load(loads: DesignLoad) -> Figure:
     """Return loads by element, force and moment of the governing one, and its response spectrum.
 
     The governing element has the greatest design value of the equivalent static force. Its histories are
-    those of the vehicle and scene that its own force comes from; a value of the table from another scene is
-    a line. Unfiltered lines are thin. A blow of a few milliseconds that would flatten the rest is cut off,
-    and its peak is written beside it. At most 12 elements are drawn, the most loaded ones.
+    those of the vehicle and scene that its own force comes from; a value of the table from another scene
+    stands in the legend. Unfiltered lines are thin. A blow of a few milliseconds that would flatten the rest
+    is cut off, and its peak is written beside it. At most 12 elements are drawn, the most loaded ones.
 
     Raises
     ------
@@ -61,11 +62,11 @@ def plot_design_load(loads: DesignLoad) -> Figure:
         axes.set_xlim(0.0, end)
     of_other = {
         name: f"in scene {row.scene[name]}"
-        for name in ("force_50ms", "moment")
+        for name in ("force_50ms", "moment", "equivalent_static_moment")
         if row.scene[name] != _scene(row)
     }
     _force(force, row, row.load.force @ direction, row.load.interval, degrees, of_other.get("force_50ms"))
-    _moment(moment, row, row.load, of_other.get("moment"))
+    _moment(moment, row, row.load, of_other)
     for axes in (force, moment):
         axes.set_xlabel("time [ms]")
     _spectrum(spectrum, loads, row)
@@ -117,24 +118,23 @@ def _force(
     axes.plot(ms, mean / 1e3, color=BLUE, ls=DASHED, lw=1.8, label="mean over the last 50 ms")
     _mark(axes, ms, mean / 1e3, "kN", row.force_50ms / 1e3, other)
     level = row.equivalent_static_force / 1e3
-    axes.axhline(level, color=RED, ls=DASH_DOT, lw=1.4, label=_static_label(row))
+    label = f"equivalent static, {_own_and_design(row, 'equivalent_static_force')} kN"
+    axes.axhline(level, color=RED, ls=DASH_DOT, lw=1.4, label=label)
     shown = readable_level(smooth, interval)
-    levels = (float(mean.max()), row.force_50ms, row.equivalent_static_force)
-    top = max(min(float(smooth.max()), shown), *levels) / 1e3
+    top = max(min(float(smooth.max()), shown) / 1e3, float(mean.max()) / 1e3, level)
     axes.set_ylim(min(0.0, 1.1 * max(float(smooth.min()), -shown) / 1e3), 1.25 * top)
     axes.set_ylabel("force [kN]")
     name_cut_peaks([(axes, [(ms, smooth / 1e3)], "kN")])
     axes.set_title(f"{row.name}: force at {round(degrees)}° from the normal", fontsize="medium")
 
 
-def _static_label(row: ElementDesign) -> str:
-    """Return the name of the line, with the design value where it is another one."""
-    own, design = row.equivalent_static_force, row.design["equivalent_static_force"]
-    more = f"; design {design / 1e3:,.0f} kN" if design > own else ""
-    return f"equivalent static, {own / 1e3:,.0f} kN{more}"
+def _own_and_design(row: ElementDesign, name: str) -> str:
+    """Return a value in thousands of its unit, with the design value where that is another one."""
+    own, design = getattr(row, name), row.design[name]
+    return f"{own / 1e3:,.0f}" + (f"; design {design / 1e3:,.0f}" if design > own else "")
 
 
-def _moment(axes: Axes, row: ElementDesign, load: ElementLoad, other: str | None) -> None:
+def _moment(axes: Axes, row: ElementDesign, load: ElementLoad, of_other: Mapping[str, str]) -> None:
     ms = np.arange(len(load.moment), dtype=np.float64) * (load.interval * 1e3)
     smooth, name = filtered(load.moment, 60, load.interval)
     mean = moving_average(load.moment, 0.05, load.interval)
@@ -142,9 +142,16 @@ def _moment(axes: Axes, row: ElementDesign, load: ElementLoad, other: str | None
     axes.plot(ms, curves[0], color=ORANGE, ls="-", lw=0.5, alpha=0.5, zorder=1.5)
     axes.plot(ms, curves[1], color=ORANGE, ls="-", lw=2.2, label=name)
     axes.plot(ms, curves[2], color=BLUE, ls=DASHED, lw=1.8, label="mean over the last 50 ms")
-    _mark(axes, ms, curves[2], "kN m", row.moment / 1e3, other)
+    _mark(axes, ms, curves[2], "kN m", row.moment / 1e3, of_other.get("moment"))
+    name_of_static, level = "equivalent_static_moment", row.equivalent_static_moment / 1e3
+    label = f"equivalent static, {_own_and_design(row, name_of_static)} kN m"
+    if name_of_static in of_other:
+        axes.plot([], [], ls="none", label=f"{label}, {of_other[name_of_static]}")
+        level = 0.0
+    else:
+        axes.axhline(level, color=RED, ls=DASH_DOT, lw=1.4, label=label)
     shown = readable_level(curves[1], load.interval)
-    top = max(min(float(curves[1].max()), shown), float(curves[2].max()), row.moment / 1e3)
+    top = max(min(float(curves[1].max()), shown), float(curves[2].max()), level)
     axes.set_ylim(0.0, 1.25 * top)
     axes.set_ylabel("moment [kN m]")
     name_cut_peaks([(axes, [(ms, curves[1])], "kN m")])
@@ -156,11 +163,10 @@ def _mark(
 ) -> None:
     """Mark the greatest value with the number of the table.
 
-    Where that comes from another scene it is a line of its own, and the curve has no number.
+    Where that comes from another scene only the legend has it: its curve is not in this panel.
     """
     if other is not None:
-        label = f"50-ms mean {other}, {design:,.0f} {unit}"
-        axes.axhline(design, color=BLUE, ls=DOTTED, lw=1.4, label=label)
+        axes.plot([], [], ls="none", label=f"50-ms mean {other}, {design:,.0f} {unit}")
         return
     at = int(np.argmax(curve))
     axes.plot([ms[at]], [curve[at]], "o", color=BLUE, ms=6, mec="w", ls="none", zorder=6)
@@ -188,6 +194,9 @@ def _spectrum(axes: Axes, loads: DesignLoad, row: ElementDesign) -> None:
         periods = np.unique([own, *np.geomspace(min(low, own), max(_PERIODS[1], own), points)])
         found = loads.spectrum(periods, row.index, ductility)
         axes.semilogx(periods, found / row.peak_force, color=color, ls="-", lw=1.8, label=label)
+    if math.isfinite(row.yield_force) and not row.has_yielded:
+        label = f"what the post resists, {row.yield_force / 1e3:,.0f} kN"
+        axes.axhline(row.yield_force / row.peak_force, color=BLUE, ls=DASHED, lw=1.4, label=label)
     axes.plot([own], [row.dynamic_load_factor], "o", color=RED, ms=7, mec="w", ls="none", zorder=6)
     axes.annotate(
         f"{own:g} s: {row.dynamic_load_factor:.2f}",

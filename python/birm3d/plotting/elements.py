@@ -31,6 +31,7 @@ _LOAD_SHARE, _ROOM = 0.01, 1.08
 _CUT = 1.05  # of what a panel shows: peaks above are cut off
 # Peaks nearer to each other than these shares of the panel are marked once.
 _SAME_TIME, _SAME_VALUE = 0.02, 0.02
+_MOST_TEXTS = 3  # peaks with their values, each in a row of its own: more would lie on each other
 
 
 class _Peak(NamedTuple):
@@ -42,11 +43,11 @@ class _Peak(NamedTuple):
 def plot_elements(result: Result) -> Figure:
     """Return force, height of the resultant and overturning moment of each element that was touched.
 
-    Forces and moments after CFC 60 (SAE J211-1), before magnitudes are taken; their peaks are marked with
-    their values. Of walls the moment is that about their line, as in :class:`birm3d.ElementLoad`.
-    Heights follow from both. They are not drawn where the horizontal force is below 5 % of its peak. The
-    figure ends where the load does. A blow of a few milliseconds that would flatten the rest is cut off, its
-    peak marked at the upper edge.
+    Forces and moments after CFC 60 (SAE J211-1), before magnitudes are taken. Their peaks are marked, the
+    three greatest with their values. Forces are whole, with their parts up and along the line. Of walls the
+    moment is that about their line, as in :class:`birm3d.ElementLoad`. Heights follow from both. They are not
+    drawn where the horizontal force is below 5 % of its peak. The figure ends where the load does. A blow of
+    a few milliseconds that would flatten the rest is cut off, its peak marked at the upper edge.
 
     Raises
     ------
@@ -66,7 +67,7 @@ def plot_elements(result: Result) -> Figure:
     for i, load in enumerate(loads):
         look = {
             "color": CYCLE[i % len(CYCLE)],
-            "ls": STYLES[i % len(STYLES)],
+            "ls": STYLES[(i + i // len(CYCLE)) % len(STYLES)],  # a colour that comes again has another line
             "lw": WIDTHS[i % len(WIDTHS)],
         }
         force, class_ = filtered(load.force, 60, load.interval)
@@ -86,7 +87,7 @@ def plot_elements(result: Result) -> Figure:
     end = _end_of_load(ms, forces)
     _mark_peaks(force_panel, ms, forces, names, end, "kN")
     _mark_peaks(moment_panel, ms, moments, names, end, "kN m")
-    force_panel.set_title(f"Force on the element, {class_}")
+    force_panel.set_title(f"Whole force on the element, {class_}")
     force_panel.set_ylabel("force [kN]")
     height_panel.set_title("Height of the horizontal resultant above the foot")
     height_panel.set_ylabel("height [m]")
@@ -116,7 +117,7 @@ def _end_of_load(ms: Floats, forces: Sequence[Floats]) -> float:
 def _mark_peaks(
     axes: Axes, ms: Floats, curves: Sequence[Floats], names: Sequence[str], end: float, unit: str
 ) -> None:
-    """Mark the greatest value of each curve and write it above the curves, one below the other.
+    """Mark the greatest value of each curve, and write the three greatest of these, one below the other.
 
     A blow that would flatten the rest is cut off: its mark, a triangle, is then at the upper edge.
     """
@@ -140,9 +141,9 @@ def _mark_peaks(
             peaks[same[0]] = peaks[same[0]]._replace(name=f"{peaks[same[0]].name} and {name}")
         else:
             peaks.append(_Peak(time, value, name))
-    peaks.sort()
+    peaks = sorted(sorted(peaks, key=lambda peak: -peak.value)[:_MOST_TEXTS])
     several = len(names) > 1
-    rows = min(len(peaks), 3)
+    rows = len(peaks)
     for k, peak in enumerate(peaks):
         text = f"{peak.name}: {peak.value:,.0f} {unit}" if several else f"{peak.value:,.0f} {unit}"
         late = peak.time > 0.6 * end
@@ -157,7 +158,7 @@ def _mark_peaks(
             va="center",
             ha="right" if late else "left",
             bbox={"fc": "w", "ec": "none", "pad": 0.5, "alpha": 0.85},
-            arrowprops={"arrowstyle": "-", "lw": 0.6, "color": "0.4"},
+            arrowprops={"arrowstyle": "-", "lw": 0.6, "color": "0.4", "relpos": (float(late), 0.5)},
             zorder=7.0,
         )
     axes.set_ylim(0.0, top * (1.12 + 0.13 * rows))

@@ -232,8 +232,9 @@ def _columns(axes: Axes, labels: Sequence[str]) -> int:
     panels = 1 if place is None else place.get_gridspec().ncols
     room = 72.0 * (axes.figure.bbox.width / axes.figure.dpi / panels - 1.2)
     for columns in range(len(labels), 1, -1):
-        rows = -(-len(labels) // columns)
-        widest = [max(len(label) for label in labels[i : i + rows]) for i in range(0, len(labels), rows)]
+        # Rows are shared out as matplotlib does: the first columns have one more.
+        shares = np.array_split([len(label) for label in labels], columns)
+        widest = [int(letters.max()) for letters in shares]
         if sum(_SAMPLE + _LETTER * letters for letters in widest) <= room:
             return columns
     return 1
