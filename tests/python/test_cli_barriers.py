@@ -50,6 +50,7 @@ CAR = ("run", "--vehicle", "passenger_car", "--mesh-density", "0.1", "--speed", 
         ),
     ],
 )  # fmt: skip
+@pytest.mark.filterwarnings("ignore::birm3d.LeaningPostWarning")
 def test_the_options_are_the_scene(
     command: Callable[..., int], capsys: pytest.CaptureFixture[str], options: str, barrier: Barrier
 ) -> None:

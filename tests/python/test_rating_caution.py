@@ -6,7 +6,7 @@ import birm3d
 import pytest
 from birm3d import Barrier, Result, Simulation, Vehicle, units
 from birm3d.assessment.criteria import Criterion
-from birm3d.assessment.rating_caution import fails_clearly, level_cautions, model_cautions, risk_lines
+from birm3d.assessment.rating_caution import fails_clearly, level_cautions, model_cautions, risk_doubts
 
 
 @pytest.mark.parametrize("standard", ["IWA 14-1", "ISO 22343-1", "ASTM F2656", "PAS 68", "SD-STD-02.01"])
@@ -112,7 +112,7 @@ def test_roll_of_light_vehicles_at_sloped_faces_is_called_an_estimate(car: Vehic
 )
 def test_verdicts_within_the_error_of_occupant_risk_say_so(rows: list[Criterion], said: list[str]) -> None:
     """A New Jersey barrier failed EN 1317 TB11 by a THIV of 35 km/h without a word."""
-    text = " ".join(risk_lines(rows))
+    text = " ".join(doubt.sentence for doubt in risk_doubts(rows))
     assert bool(text) is bool(said)
     assert all(part in text for part in said)
     failed = [row for row in rows if row.passed is False]

@@ -12,6 +12,7 @@ from ..base.intervals import wilson
 from .criteria import Criterion, criteria_html, criteria_text
 from .probability import RatingStudy
 from .rating import Rating
+from .rating_caution import level_cautions
 from .roadside import RoadsideStandard
 from .roadside_rating import level_rating
 
@@ -34,13 +35,14 @@ class LevelStudy:
     contained : float
         Probability that the vehicles of all tests are known to be contained.
     caution : str
+        Cautions of the tests, each once; doubts say in how many runs of their test they hold.
     """
 
     def __init__(self, standard: RoadsideStandard, level: str, studies: Sequence[RatingStudy]) -> None:
         self.standard, self.level = standard.name, level
         kinds = [_kinds(study) for study in studies]
         found: dict[str, float] = {}
-        self.contained, self.caution = 0.0, ""
+        self.contained = 0.0
         for combined in itertools.product(*kinds):
             share = 1.0
             for _, part in combined:
@@ -54,12 +56,12 @@ class LevelStudy:
                 rating = level_rating(standard, level, rated)
                 designation = rating.designation
                 self.contained += share * rating.contained
-                self.caution = max(self.caution, rating.caution, key=len)
             found[designation] = found.get(designation, 0.0) + share
         self.probability: Mapping[str, float] = FrozenMapping(
             dict(sorted(found.items(), key=lambda one: -one[1]))
         )
         self.tests = FrozenMapping({study.test: study for study in studies})
+        self.caution = " ".join(level_cautions({study.test: study.cautions for study in studies}))
 
     @checked
     def interval(self, share: float) -> tuple[float, float]:

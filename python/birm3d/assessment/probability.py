@@ -19,6 +19,7 @@ from .criteria import Criterion, criteria_html, criteria_text, foot_html, table_
 from .rating import Rating
 from .rating_bands import BAND_HEAD, band_rows
 from .roadside import EN_1317, MASH
+from .study_cautions import cautions_of_runs
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -88,9 +89,18 @@ class RatingStudy:
         return wilson(share, self.runs)
 
     @property
+    def cautions(self) -> tuple[str, ...]:
+        """Those of the runs that could be rated, each once; doubts say in how many of these they hold."""
+        return self.cautions_of("runs")
+
+    def cautions_of(self, noun: str) -> tuple[str, ...]:
+        """Return the cautions with another word for the runs, in the plural."""
+        return cautions_of_runs(self.ratings, f"rated {noun}" if self.failed else noun)
+
+    @property
     def caution(self) -> str:
-        """Of the run with the most to say, as one in which a segment would tip."""
-        return max((rating.caution for rating in self.ratings), key=len)
+        """All cautions as one text."""
+        return " ".join(self.cautions)
 
     @property
     def test(self) -> str:

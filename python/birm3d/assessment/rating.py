@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .criteria import Criterion, criteria_html, criteria_text
+from .doubts import Doubt
 
 __all__ = ["Rating", "first_reached"]
 
@@ -48,6 +49,9 @@ class Rating:
         Whether the penetration can not grow any more.
     is_clear : bool
         False if all that fails are values of occupant risk which the model's error decides on.
+    doubts : tuple of Doubt
+        Those of the cautions that say why this run, or its verdict, can not be relied on; a level has none of
+        its own.
     """
 
     standard: str
@@ -61,6 +65,7 @@ class Rating:
     is_rated: bool = True
     is_final: bool = True
     is_clear: bool = True
+    doubts: tuple[Doubt, ...] = ()
 
     @property
     def designation(self) -> str:

@@ -11,6 +11,7 @@ from .. import units
 from ..barrier.barrier import Barrier
 from ..barrier.kinds import Jersey
 from .criteria import Criterion
+from .doubts import Doubt
 from .limits import ASI_CLASSES, FLAIL_LIMITS, THIV_LIMIT_KM_H
 from .vehicles import HEAVY_KG
 
@@ -22,9 +23,10 @@ __all__ = [
     "fails_clearly",
     "level_cautions",
     "model_cautions",
-    "risk_lines",
+    "risk_doubts",
+    "roadside_doubts",
     "roadside_lines",
-    "tipping_lines",
+    "tipping_doubts",
 ]
 
 _BODY = (
@@ -77,8 +79,8 @@ _RISK_LIMITS = {
     "H: OIV, lateral": FLAIL_LIMITS["MASH"].velocity[1],
 }
 _NEAR = (
-    "Within {error:.0f} % of the limit: {names}. That is the greater error of computed OIV in two tests, "
-    "taken for all of these. A pass or a fail by that is no verdict."
+    f"Within {100.0 * _SPEED_ERROR:.0f} % of the limit: {{names}}. That is the greater error of computed OIV "
+    "in two tests, taken for all of these. A pass or a fail by that is no verdict."
 )
 _RIDEDOWN = (
     "Computed ridedown was 76 and 171 % above two tests: a fail by {names} is no verdict. It rests on peaks "
@@ -97,35 +99,40 @@ def model_cautions(barrier: Barrier | None) -> tuple[str, ...]:
     return _BODY, _RIGID, _LIMITS
 
 
-def tipping_lines(result: Result) -> Iterator[str]:
-    """Yield a caution if a free-standing segment would begin to tip."""
+def tipping_doubts(result: Result) -> Iterator[Doubt]:
+    """Yield a doubt if a free-standing segment would begin to tip."""
     ratio = float(result.metrics.get("max_overturning_ratio", 0.0))
     if ratio > 1.0:
-        yield _TIPS.format(ratio=ratio)
+        yield Doubt("max_overturning_ratio", ratio, _TIPS.format(ratio=ratio))
 
 
-def roadside_lines(result: Result, standard: RoadsideStandard, test: RoadsideTest) -> Iterator[str]:
-    """Yield what bears on a rating as a test of a roadside barrier."""
+def roadside_doubts(result: Result, standard: RoadsideStandard, test: RoadsideTest) -> Iterator[Doubt]:
+    """Yield why a roadside barrier may do less well in a test: it is low, or its segments would tip."""
     assert result.scene.barrier is not None  # without one there is no rating
-    yield from _low_lines(result.scene.barrier, standard, test)
+    yield from _low_rail(result.scene.barrier, standard, test)
+    yield from tipping_doubts(result)
+
+
+def roadside_lines(result: Result, test: RoadsideTest) -> Iterator[str]:
+    """Yield what bears on a rating as a test of a roadside barrier, whatever becomes of the vehicle."""
+    assert result.scene.barrier is not None
     if test.vehicle.mass >= HEAVY_KG:
         yield _ROLLS_LITTLE
     elif _is_sloped(result.scene.barrier):
         yield _SLOPED
     if test.vehicle.code == "36000T":
         yield _TANK
-    yield from tipping_lines(result)
 
 
-def risk_lines(rows: Iterable[Criterion]) -> Iterator[str]:
+def risk_doubts(rows: Iterable[Criterion]) -> Iterator[Doubt]:
     """Yield what the criteria of occupant risk are worth, where the model's error decides on them."""
     judged = [row for row in rows if row.passed is not None]
-    near = [row.name for row in judged if _is_near_limit(row)]
-    beyond = [row.name for row in judged if _fails_ridedown(row)]
+    near = tuple(row.name for row in judged if _is_near_limit(row))
+    beyond = tuple(row.name for row in judged if _fails_ridedown(row))
     if near:
-        yield _NEAR.format(names=", ".join(near), error=100.0 * _SPEED_ERROR)
+        yield Doubt("near_limits", float(len(near)), _NEAR, near)
     if beyond:
-        yield _RIDEDOWN.format(names=", ".join(beyond))
+        yield Doubt("ridedown", float(len(beyond)), _RIDEDOWN, beyond)
 
 
 def fails_clearly(rows: Iterable[Criterion]) -> bool:
@@ -147,8 +154,8 @@ def _is_sloped(barrier: Barrier) -> bool:
     return isinstance(barrier, Jersey) and float(np.ptp(barrier.half_profile()[:, 0])) > 0.0
 
 
-def _low_lines(barrier: Barrier, standard: RoadsideStandard, test: RoadsideTest) -> Iterator[str]:
-    """Yield a caution if the barrier is lower than what is required of the lowest level with this test."""
+def _low_rail(barrier: Barrier, standard: RoadsideStandard, test: RoadsideTest) -> Iterator[Doubt]:
+    """Yield a doubt if the barrier is lower than what is required of the lowest level with this test."""
     levels = [level for level, tests in standard.levels.items() if test.name in tests]
     known = [level for level in levels if standard.name == "MASH" and level in _LEAST_INCHES]
     if not known:
@@ -157,7 +164,9 @@ def _low_lines(barrier: Barrier, standard: RoadsideStandard, test: RoadsideTest)
     inches, top = _LEAST_INCHES[level], barrier._top
     least = units.inch(inches)
     if top < least - _ROUNDED:
-        yield _LOW.format(top=top, least=least, level=level, inches=inches, older=_OLDER.get(level, ""))
+        older = _OLDER.get(level, "")
+        text = _LOW.format(top=top, least=least, level=level, inches=inches, older=older)
+        yield Doubt("rail_height", least - top, text)
 
 
 def level_cautions(cautions: Mapping[str, Sequence[str]]) -> tuple[str, ...]:

@@ -10,9 +10,9 @@ import numpy as np
 
 from .. import units
 from ..result.event import gets_past, has_rolled_over, is_open, longer_run, outcome_words
-from ..result.run_warnings import doubt_lines
 from ..result.segment_motion import base_corners
 from .criteria import Criterion
+from .doubts import doubts_of_run
 from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H, graded, severity_class
 from .measures import (
     ExitBox,
@@ -25,7 +25,14 @@ from .measures import (
 )
 from .occupant import occupant_risk
 from .rating import Rating, first_reached
-from .rating_caution import fails_clearly, level_cautions, model_cautions, risk_lines, roadside_lines
+from .rating_caution import (
+    fails_clearly,
+    level_cautions,
+    model_cautions,
+    risk_doubts,
+    roadside_doubts,
+    roadside_lines,
+)
 from .roadside import RoadsideStandard, RoadsideTest
 from .vehicles import HEAVY_KG, StandardVehicle, standard_vehicle
 
@@ -69,6 +76,8 @@ def rate_roadside(
     is_clear = not failed or fails_clearly(judged.rows)
     unmet = [row.name for row in conditions if row.passed is False]
     levels = [level for level, tests in standard.levels.items() if test.name in tests]
+    barrier = roadside_doubts(result, standard, test)
+    doubts = (*doubts_of_run(result), *risk_doubts(judged.rows), *barrier)
     return Rating(
         standard.name,
         f"no rating: {', '.join(unmet)}" if unmet else _verdict(failed, is_clear, judged.classes),
@@ -76,16 +85,16 @@ def rate_roadside(
         judged.contained.passed is True,
         (*rows, Criterion("levels with this test", ", ".join(levels), "", "", None)),
         (
-            *doubt_lines(result),
+            *(doubt.sentence for doubt in doubts),
             standard.caution,
-            *risk_lines(judged.rows),
-            *roadside_lines(result, standard, test),
+            *roadside_lines(result, test),
             *model_cautions(result.scene.barrier),
         ),
         test.vehicle.code,
         test.name,
         is_rated=not unmet,
         is_clear=is_clear,
+        doubts=doubts,
     )
 
 

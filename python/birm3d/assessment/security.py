@@ -15,14 +15,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import _core, units
-from ..result.event import PAST, gets_past, is_open, longer_run, outcome_words
-from ..result.leaning_posts import low_post_lines
-from ..result.run_warnings import doubt_lines
+from ..result.event import gets_past, is_open, longer_run, outcome_words
 from ..vehicle.joint import LONGEST_SLIP
 from .criteria import Criterion
+from .doubts import Doubt, doubts_of_run
 from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
 from .rating import Rating, first_reached
-from .rating_caution import model_cautions, tipping_lines
+from .rating_caution import model_cautions, tipping_doubts
 from .vehicles import A_PILLAR, LOAD_BED, StandardVehicle, standard_vehicle
 
 if TYPE_CHECKING:
@@ -166,6 +165,7 @@ def rate_security(
         for row in (mass, *rows)
         if row.passed is False
     ]
+    doubts = (*doubts_of_run(result), *tipping_doubts(result), *_bed_doubts(result))
     return Rating(
         standard.name,
         f"no rating: {', '.join(failed)}" if failed else verdict,
@@ -173,28 +173,26 @@ def rate_security(
         contained,
         (mass, *rows[:-1], measured, rows[-1], became),
         (
-            *doubt_lines(result),
-            # Of a vehicle that came to rest behind the posts, the class of penetration rests on their lean.
-            *(low_post_lines(result.statistics) if result.outcome in PAST and not failed else ()),
-            *tipping_lines(result),
+            *(doubt.sentence for doubt in doubts),
             standard.caution,
-            *_of_bed(result),
             *model_cautions(result.scene.barrier),
         ),
         vehicle.code,
         is_rated=not failed,
         is_final=found.final,
+        doubts=doubts,
     )
 
 
-def _of_bed(result: Result) -> Iterator[str]:
-    """Yield a caution where the load bed would have left its frame."""
+def _bed_doubts(result: Result) -> Iterator[Doubt]:
+    """Yield a doubt where the load bed would have left its frame."""
     slip = result.metrics.get("bed_slip", 0.0)
     if slip > LONGEST_SLIP:
-        yield (
+        text = (
             f"The load bed slid by {slip:.2f} m. Beyond {LONGEST_SLIP:g} m it would have left the frame, so "
             "that the penetration is not to be relied on."
         )
+        yield Doubt("bed_slip", slip, text)
 
 
 def _penetration(

@@ -1,4 +1,4 @@
-"""Warning of posts that lean: a vehicle that they throw up, or that they hold though they lie low."""
+"""Warning of posts that lean: a vehicle that they throw up, or that meets them as they lie low."""
 
 from __future__ import annotations
 
@@ -8,46 +8,40 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from ..base.complaints import Complaint
-from .event import CONTAINED
 
 if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
     from .stored import Stored
 
-__all__ = ["LeaningPostWarning", "leaning_posts", "low_post_lines"]
+__all__ = ["LeaningPostWarning", "leaning_posts"]
 
 _FASTEST = 3.0  # m/s: more than a van that pitches at rigid posts has
 _STEEPEST = 45.0  # deg: a little less than where a post becomes a ramp, see kernels/indentation.hpp
 
 
 class LeaningPostWarning(UserWarning):
-    """Posts that yield threw the vehicle up at more than 3 m/s, or held it while leaning beyond 45 degrees.
+    """Posts that yield threw the vehicle up at more than 3 m/s, or leaned beyond 45 degrees.
 
     A vehicle climbs a post that leans. A front that has folded round a post holds to it; how firmly is not
-    known from any test. Whether the vehicle is stopped or goes over can be wrong either way.
+    known from any test. Whether the vehicle is stopped or goes over can be wrong either way: a vehicle that
+    goes over posts which lie so low is warned of, too.
     """
 
 
 def leaning_posts(
     scene: Scene, statistics: _core.StepStatistics | Stored, event: _core.Event | Stored
 ) -> Iterator[Complaint]:
-    """Yield a complaint if posts that yield threw the vehicle up, or held it though they lie low."""
+    """Yield a complaint if posts that yield threw the vehicle up, or lie low where the outcome is decided."""
     title = scene.vehicle.title
     if _throws(scene, statistics):
         speed = statistics.fastest_rise
         text, advice = partial(_thrown, title, speed), partial(_thrown_advice, speed)
         yield Complaint(LeaningPostWarning, "fastest_rise", speed, text, advice)
-    elif event.outcome in CONTAINED and _lie_low(statistics):
+    elif event.outcome != "undecided" and _lie_low(statistics):
         tilt = math.degrees(statistics.greatest_tilt)
         text, advice = partial(_held, title, tilt), partial(_held_advice, tilt)
         yield Complaint(LeaningPostWarning, "post_tilt", tilt, text, advice)
-
-
-def low_post_lines(statistics: _core.StepStatistics | Stored) -> Iterator[str]:
-    """Yield the doubt in what is read of a run whose posts lie low, whatever its outcome."""
-    if _lie_low(statistics):
-        yield _held_advice(math.degrees(statistics.greatest_tilt))
 
 
 def _thrown_advice(speed: float) -> str:

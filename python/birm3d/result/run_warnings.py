@@ -98,7 +98,7 @@ def warn_of_run(
     LowBarrierWarning
         As a warning, if a barrier that contains a front is lower than most of it.
     LeaningPostWarning
-        As a warning, if posts that lean threw the vehicle up, or held it though they lay low.
+        As a warning, if posts that lean threw the vehicle up, or lay low.
     """
     for complaint in complaints_of_run(scene, statistics, balances, event):
         complaint.warn()

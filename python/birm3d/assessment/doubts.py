@@ -1,0 +1,46 @@
+"""Doubts in ratings: why the outcome or a verdict of a run can not be relied on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..result.run_warnings import doubts_of
+
+if TYPE_CHECKING:
+    from ..result import Result
+
+__all__ = ["Doubt", "doubts_of_run"]
+
+
+class Doubt(NamedTuple):
+    """Why the outcome or a verdict of a run can not be relied on.
+
+    Attributes
+    ----------
+    kind : str
+        Doubts of one kind differ in their numbers only.
+    value : float
+        The greater the worse.
+    text : str
+        Whole sentences; ``{names}`` stands for the names.
+    names : tuple of str
+        Criteria that it is about.
+    """
+
+    kind: str
+    value: float
+    text: str
+    names: tuple[str, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """As the cautions of one run have it."""
+        return self.text.replace("{names}", ", ".join(self.names))
+
+
+def doubts_of_run(result: Result) -> Iterator[Doubt]:
+    """Yield why the outcome of a run can not be relied on, as its warnings say."""
+    for one in doubts_of(result):
+        assert one.advice is not None  # doubts have one
+        yield Doubt(one.quantity, one.value, one.advice())
