@@ -342,6 +342,23 @@ def test_bad_input(call: Callable[[], object], message: str) -> None:
         call()
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning", "ignore::birm3d.LowBarrierWarning")
+def test_no_standard_judges_the_occupants_of_a_heavy_truck(car_on_jersey: Result) -> None:
+    """Its table said "pass: preferred" by MASH without a word."""
+    told = "MASH and EN 1317 do not judge this for so heavy a vehicle"
+    truck = Simulation(
+        Vehicle.preset("cargo_truck", mesh_density=0.1), Barrier.jersey(height=1.07), 20.0, 20.0
+    )
+    risk = birm3d.occupant_risk(truck.run())
+    assert risk.summary().splitlines()[1].startswith(told)
+    assert told in risk._repr_html_()
+    study = birm3d.occupant_risk(birm3d.sweep(truck, {"impact_speed": [18.0, 20.0]}))
+    assert study.summary().splitlines()[1].startswith(told)
+    assert told in study._repr_html_()
+    light = birm3d.occupant_risk(car_on_jersey)
+    assert told not in light.summary() + light._repr_html_()
+
+
 def test_a_run_without_an_impact(car_on_jersey: Result) -> None:
     car = car_on_jersey.scene.vehicle
     with pytest.raises(ValueError, match="result must have a barrier"):

@@ -118,3 +118,21 @@ def test_verdicts_within_the_error_of_occupant_risk_say_so(rows: list[Criterion]
     failed = [row for row in rows if row.passed is False]
     assert not fails_clearly(failed)  # all that fail here are within the error
     assert fails_clearly([*rows, Criterion("upright", "rolled over", "", "", False)])
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning", "ignore::birm3d.LowBarrierWarning")
+@pytest.mark.parametrize(
+    ("level", "test", "like", "metres"), [("H2", "TB51", "TL-4", 0.91), ("H4b", "TB81", "TL-5", 1.07)]
+)
+def test_a_low_barrier_for_buses_and_trucks_is_told_by_analogy(
+    level: str, test: str, like: str, metres: float
+) -> None:
+    """EN 1317 TB81 passed at 0.81 m without a word; it has no height of its own."""
+    for height, told in ((metres, False), (metres - 0.1, True)):
+        barrier = Barrier.jersey(profile="f_shape", height=height)
+        (crash,) = birm3d.test_matrix(f"EN 1317 {test}", barrier=barrier, mesh_density=0.3)
+        rating = birm3d.rate(crash.run(), f"EN 1317 {level}")
+        assert rating.test == test
+        assert (
+            f"By analogy alone, taking {level} as MASH {like}, at least {metres} m" in rating.caution
+        ) is told

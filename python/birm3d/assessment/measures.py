@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -29,6 +29,7 @@ __all__ = [
     "barrier_extent",
     "exit_box",
     "heading_rows",
+    "movement_rows",
     "penetration_history",
     "vehicle_intrusion",
 ]
@@ -98,6 +99,15 @@ def check_side_on(result: Result) -> None:
     angle = result.scene.impact_angle
     if abs(math.sin(math.radians(angle))) < ALONG_LINE:
         raise ValueError(f"impact_angle must lead across the barrier's line for a rating, got {angle:g} deg")
+
+
+def movement_rows(result: Result) -> Iterator[Criterion]:
+    """Yield how far a barrier gives way that yields or stands free: reported, not judged."""
+    metrics = result.metrics
+    if "barrier_deflection" in metrics:
+        yield Criterion("dynamic deflection", float(metrics["barrier_deflection"]), "m", "", None)
+    if "post_tilt" in metrics:
+        yield Criterion("greatest tilt of a post", float(metrics["post_tilt"]), "deg", "", None)
 
 
 def heading_rows(result: Result, most: float) -> list[Criterion]:

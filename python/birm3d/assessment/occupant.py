@@ -15,6 +15,7 @@ from ..units import Quantity, si
 from .pulse import pulse_of_channels, pulse_of_result
 from .risk_study import RiskStudy, risk_of_study
 from .risk_values import CAUTION, OccupantRisk
+from .vehicles import HEAVY_KG
 
 __all__ = ["CAUTION", "OccupantRisk", "occupant_risk"]
 
@@ -107,7 +108,9 @@ def occupant_risk(
 
     def look(run: Result) -> OccupantRisk:
         pulse = pulse_of_result(run, point, part)
-        return OccupantRisk(pulse, _head_ahead(run, point, part, head_x), edition, is_computed=True)
+        ahead = _head_ahead(run, point, part, head_x)
+        heavy = run.scene.vehicle.mass >= HEAVY_KG
+        return OccupantRisk(pulse, ahead, edition, is_computed=True, is_heavy=heavy)
 
     if isinstance(result, Result):
         return look(result)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ..result import Result
     from ..study import Study
 
-__all__ = ["RatingStudy", "rate_study", "rating_study"]
+__all__ = ["RatingStudy", "rate_study", "rating_study", "why_missing"]
 
 _UNDECIDED = "result must have run until"
 _UNKNOWN = "vehicle must be one that"
@@ -59,7 +59,7 @@ class RatingStudy:
     @property
     def counts(self) -> Mapping[str, int]:
         """Number of the runs that have each designation, or ``"no rating: why"``; the greatest first."""
-        missing = [_without_rating(reason) for reason in self.failed.values()]
+        missing = [f"no rating: {why_missing(reason)}" for reason in self.failed.values()]
         return FrozenMapping(dict(Counter([*self.designation, *missing]).most_common()))
 
     @property
@@ -168,15 +168,13 @@ class RatingStudy:
         return f"RatingStudy({self.runs} runs, {dict(self.probability)})"
 
 
-def _without_rating(reason: str) -> str:
-    """Return the class of a run without a rating, by its reason."""
+def why_missing(reason: str) -> str:
+    """Return why a run has no rating in few words, by the error that said so."""
     if reason.startswith(_UNDECIDED):
-        why = "outcome not decided"
-    elif reason.startswith(_UNKNOWN):
-        why = "the standard has no vehicle of that mass"
-    else:
-        why = re.split("[,;] got ", reason)[0]
-    return f"no rating: {why}"
+        return "outcome not decided"
+    if reason.startswith(_UNKNOWN):
+        return "the standard has no vehicle of that mass"
+    return re.split("[,;] got ", reason)[0]
 
 
 def rate_study(study: Study, rate: Callable[[Result], Rating]) -> RatingStudy:

@@ -49,6 +49,8 @@ class Rating:
         Whether the penetration can not grow any more.
     is_clear : bool
         False if all that fails are values of occupant risk which the model's error decides on.
+    unmet : tuple of str
+        Conditions of the standard that are not met; that the vehicle goes on past the barrier is none.
     doubts : tuple of Doubt
         Those of the cautions that say why this run, or its verdict, can not be relied on; a level has none of
         its own.
@@ -65,6 +67,7 @@ class Rating:
     is_rated: bool = True
     is_final: bool = True
     is_clear: bool = True
+    unmet: tuple[str, ...] = ()
     doubts: tuple[Doubt, ...] = ()
 
     @property

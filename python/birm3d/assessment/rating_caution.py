@@ -71,6 +71,13 @@ _LEAST_INCHES = {"TL-1": 27.0, "TL-2": 27.0, "TL-3": 29.0, "TL-4": 36.0, "TL-5":
 
 EN 1317 has none.
 """
+_LIKE = {"TB51": ("H2", "TL-4"), "TB81": ("H4b", "TL-5")}
+"""Tests of EN 1317 with a bus or a heavy truck -> their level, and the level of MASH that is like it."""
+_LOW_LIKE = (
+    "The barrier ends {top:.2f} m above the ground. EN 1317 asks for no height. By analogy alone, taking "
+    "{level} as MASH {like}, at least {least:.2f} m ({inches:g} in) is commonly reported. A vehicle that is "
+    "computed upright at a lower barrier may go over it in a test."
+)
 _SPEED_ERROR = 0.15  # of OIV in the two tests of tests/validation/ratings.md: -2 and +15 %
 _RISK_LIMITS = {
     "ASI": ASI_CLASSES["C"],
@@ -158,24 +165,31 @@ def _low_rail(barrier: Barrier, standard: RoadsideStandard, test: RoadsideTest) 
     """Yield a doubt if the barrier is lower than what is required of the lowest level with this test."""
     levels = [level for level, tests in standard.levels.items() if test.name in tests]
     known = [level for level in levels if standard.name == "MASH" and level in _LEAST_INCHES]
-    if not known:
+    own, like = _LIKE.get(test.name, ("", ""))
+    if not known and not like:
         return
-    level = min(known, key=lambda one: _LEAST_INCHES[one])
+    level = like or min(known, key=lambda one: _LEAST_INCHES[one])
     inches, top = _LEAST_INCHES[level], barrier._top
     least = units.inch(inches)
     if top < least - _ROUNDED:
-        older = _OLDER.get(level, "")
-        text = _LOW.format(top=top, least=least, level=level, inches=inches, older=older)
+        numbers = {"top": top, "least": least, "inches": inches}
+        text = (
+            _LOW_LIKE.format(level=own, like=like, **numbers)
+            if like
+            else _LOW.format(level=level, older=_OLDER.get(level, ""), **numbers)
+        )
         yield Doubt("rail_height", least - top, text)
 
 
-def level_cautions(cautions: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
+def level_cautions(cautions: Mapping[str, Sequence[str]], noun: str = "Test") -> tuple[str, ...]:
     """Return the cautions of a level: each once, after the tests that it is about if not of all.
 
     Parameters
     ----------
     cautions
         Test -> cautions of its rating.
+    noun
+        What a test is called, in the singular.
     """
     tests: dict[str, list[str]] = {}
     for test, of_test in cautions.items():
@@ -186,7 +200,7 @@ def level_cautions(cautions: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
         groups.setdefault(tuple(names), []).append(caution)
     common = groups.pop(tuple(cautions), [])
     own = (
-        f"Test{'s' if len(names) > 1 else ''} {', '.join(names)}: {' '.join(of_tests)}"
+        f"{noun}{'s' if len(names) > 1 else ''} {', '.join(names)}: {' '.join(of_tests)}"
         for names, of_tests in groups.items()
     )
     return (*common, *own)

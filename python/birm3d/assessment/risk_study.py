@@ -14,7 +14,7 @@ from ..study.predict import SHARE, quantiles
 from ..study.whole_runs import require_found
 from .criteria import table_html, table_text
 from .limits import FLAIL_LIMITS
-from .risk_values import CAUTION, OccupantRisk
+from .risk_values import CAUTION, NOT_JUDGED, OccupantRisk
 
 __all__ = ["RiskStudy", "risk_of_study"]
 
@@ -82,9 +82,14 @@ class RiskStudy:
         shares = ", ".join(f"{name} {self.passed(name):.0%}" for name in (*FLAIL_LIMITS, "EN 1317"))
         return f"occupant risk of {len(self.risks)} runs; all limits are met in: {shares}{without}"
 
+    @property
+    def _heavy(self) -> list[str]:
+        """Return that no standard judges the occupants of some of the vehicles, if so."""
+        return [NOT_JUDGED] if any(risk.is_heavy for risk in self.risks) else []
+
     def summary(self) -> str:
         """Return medians, bands, limits and the caution as text."""
-        return "\n".join([self._title, table_text(_HEAD, self.rows), CAUTION])
+        return "\n".join([self._title, *self._heavy, table_text(_HEAD, self.rows), CAUTION])
 
     __str__ = summary
 
@@ -100,7 +105,7 @@ class RiskStudy:
         }
 
     def _repr_html_(self) -> str:
-        return table_html(self._title, _HEAD, self.rows, CAUTION)
+        return table_html(". ".join([self._title, *self._heavy]), _HEAD, self.rows, CAUTION)
 
     def __repr__(self) -> str:
         bands = ", ".join(

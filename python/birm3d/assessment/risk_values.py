@@ -20,13 +20,17 @@ from .limits import (
 from .pulse import Pulse
 from .severity import severity_index
 
-__all__ = ["CAUTION", "OccupantRisk"]
+__all__ = ["CAUTION", "NOT_JUDGED", "OccupantRisk"]
 
 CAUTION = (
     "Indicative. Occupants are points that fly freely within a compartment that keeps its shape; belts, bags "
     "and intrusion are left out. Of a computed run the vehicle is one rigid body: its engine does not stop "
     "before the cabin does, so that peaks of short means differ from a gauge's."
 )
+NOT_JUDGED = (
+    "MASH and EN 1317 do not judge this for so heavy a vehicle: limits are those for cars and pickups."
+)
+"""Of a vehicle from :data:`birm3d.assessment.vehicles.HEAVY_KG` on."""
 _NO_BAND = (
     "No band: these are values of one vehicle. occupant_risk(birm3d.predict(simulation)) has those of others "
     "of its class."
@@ -44,14 +48,18 @@ class OccupantRisk:
     """Values of occupant risk with their limits; made by :func:`birm3d.occupant_risk`.
 
     A value that needs a channel which was not given raises a ValueError that names it; the table says so.
-    Values of a computed run, not of channels (``is_computed``), have no band, and the table says so.
+    Values of a computed run, not of channels (``is_computed``), have no band, and the table says so. It also
+    says where no standard judges the occupants of so heavy a vehicle (``is_heavy``).
     """
 
-    def __init__(self, pulse: Pulse, head_x: float, edition: int, *, is_computed: bool = False) -> None:
+    def __init__(
+        self, pulse: Pulse, head_x: float, edition: int, *, is_computed: bool = False, is_heavy: bool = False
+    ) -> None:
         self.pulse = pulse
         self.head_x = head_x
         self.edition = edition
         self.is_computed = is_computed
+        self.is_heavy = is_heavy
         self._flail: FlailSpace = flail_space(pulse)
 
     @property
@@ -165,10 +173,11 @@ class OccupantRisk:
     @property
     def notes(self) -> tuple[str, ...]:
         """What to consider before the values are used."""
+        notes = (NOT_JUDGED,) if self.is_heavy else ()
         gained = self.pulse.velocity[-1, 0] - self.pulse.velocity[self.pulse.zero, 0]
         if "x" in self.pulse.known and gained > _FORWARD:
-            return (_PUSHED_ON.format(gained=gained),)
-        return ()
+            return (*notes, _PUSHED_ON.format(gained=gained))
+        return notes
 
     @checked
     def passed(self, standard: str) -> bool:
@@ -201,16 +210,19 @@ class OccupantRisk:
             if strike is None
             else f"the occupant strikes at {strike * 1e3:.1f} ms"
         )
-        return "\n".join([f"occupant risk: {when}", criteria_text(self.criteria), *self._foot()])
+        head = [f"occupant risk: {when}", *self.notes]
+        return "\n".join([*head, criteria_text(self.criteria), *self._foot()])
 
     def _foot(self) -> list[str]:
         """Return the lines below the table."""
-        return [*self.missing, *self.notes, CAUTION, *([_NO_BAND] if self.is_computed else [])]
+        return [*self.missing, CAUTION, *([_NO_BAND] if self.is_computed else [])]
 
     __str__ = summary
 
     def _repr_html_(self) -> str:
-        return criteria_html("occupant risk", self.criteria, "\n".join(self._foot()))
+        return criteria_html(
+            ". ".join(["occupant risk", *self.notes]), self.criteria, "\n".join(self._foot())
+        )
 
     def __repr__(self) -> str:
         return f"OccupantRisk({', '.join(f'{name}={value:.4g}' for name, value in self.to_dict().items())})"

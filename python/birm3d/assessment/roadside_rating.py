@@ -94,6 +94,7 @@ def rate_roadside(
         test.name,
         is_rated=not unmet,
         is_clear=is_clear,
+        unmet=tuple(unmet),
         doubts=doubts,
     )
 

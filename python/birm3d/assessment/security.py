@@ -19,7 +19,7 @@ from ..result.event import gets_past, is_open, longer_run, outcome_words
 from ..vehicle.joint import LONGEST_SLIP
 from .criteria import Criterion
 from .doubts import Doubt, doubts_of_run
-from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
+from .measures import barrier_extent, check_side_on, heading_rows, movement_rows, penetration_history
 from .rating import Rating, first_reached
 from .rating_caution import model_cautions, tipping_doubts
 from .vehicles import A_PILLAR, LOAD_BED, StandardVehicle, standard_vehicle
@@ -171,7 +171,7 @@ def rate_security(
         f"no rating: {', '.join(failed)}" if failed else verdict,
         found.greatest,
         contained,
-        (mass, *rows[:-1], measured, rows[-1], became),
+        (mass, *rows[:-1], measured, rows[-1], *movement_rows(result), became),
         (
             *(doubt.sentence for doubt in doubts),
             standard.caution,
@@ -180,6 +180,7 @@ def rate_security(
         vehicle.code,
         is_rated=not failed,
         is_final=found.final,
+        unmet=tuple(row.name for row in (mass, *rows[:-1]) if row.passed is False),
         doubts=doubts,
     )
 

@@ -23,6 +23,7 @@ from .published_class import class_of
 from .study_case import ROADSIDE, Case
 from .tests_verdict import distance_past
 from .uncertainty import computing_error
+from .verdict_cautions import has_doubts
 
 __all__ = ["balance_section", "beyond_tests", "validation_section"]
 
@@ -251,7 +252,8 @@ def _criteria(case: Case) -> Iterator[tuple[str, str, str, str]]:
     yield "headline numbers with a hundredth of the tolerance", percent(worst), "1 %", verdict(worst <= 0.01)
     yield "the outcome is decided", outcome_words(result.outcome), "", verdict(result.outcome != "undecided")
     told = len(case.warnings)
-    yield "warnings of the run", str(told), "none", "pass" if told == 0 else "see the section on warnings"
+    doubts = "see the cautions of the verdict: ratings have doubts" if has_doubts(case) else "pass"
+    yield "warnings of the run", str(told), "none", doubts if told == 0 else "see the section on warnings"
 
 
 def _energies(case: Case) -> Iterator[tuple[str, ...]]:

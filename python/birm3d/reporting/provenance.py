@@ -10,6 +10,7 @@ from ..io.made_with import facts_text, platform_facts
 from ..result.metrics import METRIC_UNITS
 from .blocks import Block, Items, Listing, Section, Table, Text
 from .study_case import Case
+from .verdict_cautions import has_doubts
 
 __all__ = ["CAPSULE", "metrics_section", "omitted_section", "provenance_section", "warning_section"]
 
@@ -26,6 +27,8 @@ def warning_section(case: Case) -> Section:
     blocks: list[Block] = (
         [Items(items=case.warnings)] if case.warnings else [Text("The run gave no warnings.")]
     )
+    if has_doubts(case):
+        blocks.append(Text("Ratings have doubts: see the cautions of the verdict."))
     return Section("Warnings", "warnings", blocks)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from .. import units
+from ..barrier.barrier import Barrier
 from ..barrier.text import barrier_text
 from ..base.plain_words import plain_words
 from ..base.shown_numbers import shown_value
@@ -59,11 +60,25 @@ def scene_section(case: Case) -> Section:
     blocks: list[Block] = [
         figure(
             result.plot_plan(),
-            "Plan view of the trajectory; outlines from above, with what overhangs the barrier",
+            "Plan view of the trajectory; outlines from above, with what overhangs the barrier"
+            f"{_ends(scene.barrier)}",
         ),
         Table("Scene", ("", "value"), rows),
     ]
     return Section("Scene", "scene", blocks)
+
+
+def _ends(barrier: Barrier | None) -> str:
+    """Return why the ends of free-standing segments overlap in a plan view, as the end of a caption."""
+    free = getattr(barrier, "free_standing", None)
+    if barrier is None or free is None or len(barrier.core.segments) < 2:
+        return ""
+    if free.joint != "pinned":
+        return ". Loose segments do not touch each other in this model: their outlines may overlap"
+    return (
+        ". Segments turn about pins at the middle of their ends. Where the chain kinks, square ends overlap "
+        "on the inner side: their contact is not computed, and real ones may lock there"
+    )
 
 
 def _barrier_rows(case: Case) -> Iterator[tuple[str, str]]:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 
-from ..result.event import outcome_words
+from ..assessment import RatingStudy
+from ..assessment.probability import why_missing
+from ..result.event import PAST, outcome_words
 from ..study import Study
 from .blocks import Table
 from .shares import cells_of_share, interval_of_share, share_of_runs, study_note
@@ -43,15 +46,13 @@ def study_table(case: Case) -> Table | None:
     standard = rated.ratings[0].standard
     rating_of_run = next(one for one in case.ratings if one.standard == standard)
     bands = {name: (median, band) for name, median, band, _, _ in rated.rows}
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for one in rating_of_run.criteria:
         same = [c for rating in rated.ratings for c in rating.criteria if c.name == one.name]
         judged = [c.passed for c in same if c.passed is not None]
         met = cells_of_share(study, sum(judged), len(judged)) if judged else ("reported", "–")
         rows.append((one.name, one.verdict, *bands.get(one.name, ("–", "–")), *met))
-    word = "pass" if rating_of_run.passed else "FAIL"
-    met = cells_of_share(study, sum(rating.passed for rating in rated.ratings), rated.runs)
-    rows.append(("all of these, and contained", word, "–", "–", *met))
+    rows += _all_of_these(study, rated, "pass" if rating_of_run.passed else "FAIL")
     return Table(
         f"The study beside the verdict by {standard}, indicative: {len(rated.ratings):,} of {len(study):,} "
         "runs are rated",
@@ -66,6 +67,37 @@ def study_table(case: Case) -> Table | None:
         rows,
         note=f"{study_note(study)}{_of_speed(study)}",
     )
+
+
+def _all_of_these(study: Study, rated: RatingStudy, word: str) -> Iterator[tuple[str, ...]]:
+    """Yield the share of the runs that meet everything, and why others are not among these.
+
+    A run that does not meet the conditions of the standard is no failure of the barrier.
+    """
+    judged = [rating for rating in rated.ratings if not rating.unmet]
+    if judged:
+        met = cells_of_share(study, sum(rating.passed for rating in judged), len(judged))
+        past = [outcome_words(outcome) for outcome in PAST]
+        behind = any(
+            row.name == "outcome" and row.value in past
+            for rating in judged
+            if rating.contained
+            for row in rating.criteria
+        )
+        kept = "contained or at rest behind the barrier" if behind else "contained"
+        yield f"all of these, and {kept}", word, "–", "–", *met
+    whys = Counter(", ".join(rating.unmet) for rating in rated.ratings if rating.unmet)
+    whys += Counter(why_missing(reason) for reason in rated.failed.values())
+    if whys:
+        told = "; ".join(f"{why} {count:,}" for why, count in whys.most_common())
+        yield (
+            "without a verdict by the standard",
+            "–",
+            "–",
+            "–",
+            f"{whys.total():,} of {rated.runs:,}: {told}",
+            "–",
+        )
 
 
 def _of_speed(study: Study) -> str:

@@ -6,22 +6,22 @@ import dataclasses
 import re
 from collections.abc import Iterator, Sequence
 
-from ..assessment import DesignLoad, OccupantRisk, Rating
+from ..assessment import OccupantRisk, Rating
 from ..assessment.criteria import Criterion
-from ..assessment.rating_caution import model_cautions
 from ..assessment.vehicles import HEAVY_KG
 from ..result.element_loads import touched_elements
 from ..result.event import outcome_words
 from ..vehicle.title import kind_words
+from .barrier_answers import foundation_answer, kept_words, movement_answer
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
 from .evidence import beyond_tests
 from .numbers import percent
-from .static_force import band_of_design, made_by
 from .study_case import ROADSIDE, Case, is_oblique
 from .study_verdict import study_answers, study_table
 from .tests_verdict import answers_of_tests
 from .uncertainty import computing_error
+from .verdict_cautions import rating_cautions
 
 __all__ = ["criteria_table", "risk_section", "verdict_section"]
 
@@ -50,13 +50,7 @@ def verdict_section(case: Case) -> Section:
     if case.not_rated:
         rows = [(name, _reason(case, reason)) for name, reason in case.not_rated.items()]
         blocks.append(Table("Standards that do not rate this run", ("standard", "why"), rows))
-    if case.ratings:
-        model = model_cautions(result.scene.barrier)
-        blocks.append(Caution(" ".join(model)))
-        for rating in case.ratings:
-            own = " ".join(one for one in rating.cautions if one not in model)
-            if own:
-                blocks.append(Caution(f"{rating.standard}: {own}"))
+    blocks += rating_cautions(case)
     return Section("Verdict", "verdict", blocks)
 
 
@@ -90,10 +84,9 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         f"{outcome_words(result.outcome)}: {result.outcome_detail}{_other_outcomes(case)}",
     )
     for rating in case.ratings:
-        contained = "contained" if rating.contained else "NOT contained"
         yield (
             f"Rating by {rating.standard}, indicative",
-            f"{rating.designation} (vehicle {rating.vehicle_class}); {contained}, "
+            f"{rating.designation} (vehicle {rating.vehicle_class}); {kept_words(result, rating)}, "
             f"{_penetration(rating)}{_chances(case, rating.standard)}",
         )
     if result.scene.barrier is not None and not case.ratings:
@@ -108,16 +101,8 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
             f"{most.name}, with an overturning moment of {most.peak_overturning_moment_50ms / 1e3:,.0f} kN m"
             f"{_load_band(case)}",
         )
-    if isinstance(case.design_loads, DesignLoad) and loads:
-        row = case.design_loads.governing
-        alone = "this run alone, " if case.study is not None and len(case.design_loads.scenes) == 1 else ""
-        yield (
-            "What does its foundation have to carry?",
-            f"{alone}{row.name}: {'design with an ' if row.band else ''}equivalent static force "
-            f"{row.design['equivalent_static_force'] / 1e3:,.0f} kN at {row.design['height']:.2f} m, "
-            f"moment at the foot {row.design['moment'] / 1e3:,.0f} kN m, "
-            f"{made_by(case.design_loads)}{band_of_design(row)}",
-        )
+    yield from movement_answer(case)
+    yield from foundation_answer(case)
     yield "Would occupants be at risk?", _risk_line(case)
     yield "How well is it computed?", _computed_line(case)
     yield from beyond_tests(case)
@@ -232,7 +217,7 @@ def _computed_line(case: Case) -> str:
 
 def risk_section(case: Case) -> Section:
     """Return what the occupants undergo."""
-    from ..assessment.risk_values import CAUTION
+    from ..assessment.risk_values import CAUTION, NOT_JUDGED
 
     if isinstance(case.risk, str):
         return Section("Occupant risk", "occupants", [Text(f"Not computed: {_without_value(case.risk)}.")])
@@ -242,12 +227,9 @@ def risk_section(case: Case) -> Section:
         if strike is None
         else (f"The occupant strikes the compartment {strike * 1e3:.1f} ms after the first touch.")
     )
-    heavy = (
-        "MASH and EN 1317 do not judge this for so heavy a vehicle: limits are those for cars and pickups."
-    )
     blocks: list[Block] = [
         Text(when),
-        *([Caution(heavy)] if case.result.scene.vehicle.mass >= HEAVY_KG else []),
+        *([Caution(NOT_JUDGED)] if case.result.scene.vehicle.mass >= HEAVY_KG else []),
         _risk_table(case, case.risk),
         *(Text(text) for text in case.risk.missing),
         Caution(CAUTION),

@@ -94,7 +94,7 @@ CRUSH_METRICS: Mapping[str, Metric] = {
         needs="segments",
         value=lambda run: math.degrees(run.extremes.segments.tilt),
         of="posts",
-        shown=Shown("tilt of a post", ".1f", "deg"),
+        shown=Shown("greatest tilt of a post", ".1f", "deg", headline=True),
     ),
     "residual_post_tilt": Metric(
         unit="deg",
@@ -113,7 +113,7 @@ CRUSH_METRICS: Mapping[str, Metric] = {
         needs="segments",
         value=made.max_overturning_ratio,
         of="segments",
-        shown=Shown("overturning / restoring moment of a segment", ".2f"),
+        shown=Shown("overturning / restoring moment of a segment", ".2f", headline=True),
     ),
 }
 """In the order of :data:`birm3d.metrics.METRICS`."""
