@@ -397,3 +397,17 @@ def test_command_line(command, capsys, tmp_path) -> None:
     assert capsys.readouterr().out.startswith("least height: ")
     assert command("search", "gap", *row, "--range", "1") == 2
     assert "--range must be LEAST:GREATEST, got '1'" in capsys.readouterr().err
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning", "ignore::birm3d.CoreContactWarning")
+def test_the_line_on_the_class_is_not_cut_in_the_figure(monkeypatch: pytest.MonkeyPatch) -> None:
+    truck = Vehicle.preset("cargo_truck", mesh_density=0.1)
+    crash = Simulation(truck, Barrier.bollards(count=1), 13.4)
+    found = birm3d.least_height(crash, (0.2, 1.0), points=3, resolution=0.2, offsets=[0.0], draws=0)
+    monkeypatch.setattr(found, "class_shares", {0.2 + 0.1 * i: 0.5 + 0.05 * i for i in range(9)})
+    figure = found.plot()
+    figure.canvas.draw()
+    title = figure.axes[0].title
+    assert " ".join(title.get_text().split()).endswith("90% at 1.00 m.")
+    box = title.get_window_extent()
+    assert 0.0 <= box.x0 < box.x1 <= figure.bbox.x1

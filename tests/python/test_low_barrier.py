@@ -9,6 +9,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, LowBarrierWarning, Simulation, Vehicle, units
+from birm3d.barrier.kinds import Bollards
 from birm3d.vehicle.test_bodies import laboratory_block
 
 TRUCK = Vehicle.preset("cargo_truck", mesh_density=0.3)
@@ -115,6 +116,24 @@ def test_the_search_for_a_height_tells_where_to_stop() -> None:
         warnings.simplefilter("error", LowBarrierWarning)
         found = birm3d.least_height(crash, (0.3, 1.0), points=3, resolution=0.2, offsets=[0.0], draws=0)
     assert "do not go below 0.78 m" in found.caution
+    assert "The barrier does not give way under it." in found.caution
+
+
+@pytest.mark.filterwarnings("ignore")  # of weak barriers that are tried on purpose
+@pytest.mark.parametrize(
+    ("barrier", "told"),
+    [
+        (Barrier.bollards(count=1, wall_thickness=0.03), "Posts that yield lean, and are lower then"),
+        (Barrier.jersey(length=12.0, segments=4, free_standing=True), "Segments slide under it"),
+    ],
+)
+def test_the_search_for_a_height_says_how_the_barrier_gives_way(barrier: Barrier, told: str) -> None:
+    """Tubes that yield were said not to give way."""
+    angle = 90.0 if isinstance(barrier, Bollards) else 20.0
+    crash = Simulation(TRUCK, barrier, 8.0, angle)
+    found = birm3d.least_height(crash, (0.8, 1.0), points=2, resolution=0.2, offsets=[0.0], draws=0)
+    assert told in found.caution
+    assert "does not give way" not in found.caution
 
 
 def test_the_validation_page_has_the_heights_of_fronts() -> None:

@@ -326,6 +326,7 @@ def test_no_fit_where_the_runs_tell_none(
 ) -> None:
     mass = {"vehicle.gvw": lognorm(0.02, scale=MASS)}
     curve = birm3d.fragility(block, speeds, mass, 10, exceeds={"dynamic_crush": limit})
+    assert curve.plot().axes[0].get_ylabel() == f"probability: dynamic crush > {limit:g} m"
     assert curve.fit is None
     assert why in curve.no_fit
     assert why in repr(curve)

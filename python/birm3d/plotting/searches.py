@@ -43,8 +43,8 @@ def plot_limit(limit: Limit) -> Figure:
         panels[1].set_ylabel("impact offset [m]")
     panels[-1].set_xlabel(f"{limit.name} [{limit.unit}]")
     note = "" if limit.monotonic else "; not monotonic"
-    head = wrapped(limit.study.scene_title, figure)
-    panels[0].set_title("\n".join([head, f"{limit.headline}{note}", limit.band]), fontsize="medium")
+    lines = "\n".join([limit.study.scene_title, f"{limit.headline}{note}", limit.band])
+    panels[0].set_title(wrapped(lines, figure), fontsize="medium")
     legend([panels[0]])
     return figure
 

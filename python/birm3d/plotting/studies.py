@@ -10,7 +10,8 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..study.shown_columns import parameter_words, shown_column
+from ..base.plain_words import plain_words
+from ..study.shown_columns import shown_column
 from .figure import new_figure
 from .style import BLUE, RED, legend, prepare, wrapped
 
@@ -112,7 +113,7 @@ def plot_fragility(fragility: Fragility) -> Figure:
         axes.fill_between(speeds, low, high, color=RED, alpha=0.15, lw=0, label=f"{level} of the fit")
     axes.set_ylim(-0.03, 1.03)
     axes.set_xlabel("impact speed [m/s]")
-    axes.set_ylabel(f"probability: {parameter_words(fragility.event)}")
+    axes.set_ylabel(f"probability: {plain_words(fragility.event)}")
     axes.set_title(wrapped(fragility.study.scene_title, figure), fontsize="medium")
     legend([axes])
     return figure

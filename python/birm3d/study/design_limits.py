@@ -48,9 +48,11 @@ _SKIN = (
 _OVER = (
     "Computed, not tested. Here a barrier that catches the lower edge of the front holds the vehicle, though "
     "a real front rides up on it: do not go below {}. The springs of the vehicle "
-    "are estimates, and the barrier does not give way under it: leave a margin. Guidance for security "
-    "bollards asks for 0.5 m or more."
+    "are estimates: leave a margin. {} Guidance for security bollards asks for 0.5 m or more."
 )
+_RIGID = "The barrier does not give way under it."
+_LEAN = "Posts that yield lean, and are lower then: look at post_tilt too."
+_SLIDE = "Segments slide under it, but do not tip: look at max_overturning_ratio too."
 _STRONG = "{:.2f} m: more than a third of the front's resistance would stand above the barrier"
 _SLIDES = "Computed, not tested. Segments slide but do not tip, and their joints do not break."
 _TIPS = (
@@ -201,7 +203,9 @@ def least_height(
         offsets=_usual_offsets(simulation, barrier, offsets),
         measure="vehicle_penetration",
         most=_at_most("penetration", penetration),
-        caution=_OVER.format("the bumper beam" if height is None else _STRONG.format(height)),
+        caution=_OVER.format(
+            "the bumper beam" if height is None else _STRONG.format(height), _gives_way(barrier)
+        ),
         outcomes=CONTAINED,  # who rolls over leans across the top
     )
     limits = _usual_heights(barrier) if heights is None else heights
@@ -375,6 +379,13 @@ def _check_width(simulation: Simulation, row: Bollards, gaps: Sequence[float]) -
             f"gaps must leave a row wider than the vehicle ({width:.3g} m), got {gaps[0]:g} m between "
             f"{row.count} bollards: give more bollards"
         )
+
+
+def _gives_way(barrier: Barrier) -> str:
+    """Return what becomes of the barrier while the vehicle stands on it, as a sentence."""
+    if barrier.stands_free() is not None:
+        return _SLIDE
+    return _RIGID if barrier.yields() is None else _LEAN
 
 
 def _usual_heights(barrier: Barrier) -> tuple[float, float]:
