@@ -97,7 +97,7 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         most = max(loads, key=lambda load: load.peak_force_50ms)
         yield (
             "What does the barrier have to carry?",
-            f"up to {most.peak_force_50ms / 1e3:,.0f} kN (50-ms mean) at {most.height_at_peak:.2f} m on "
+            f"up to {most.peak_force_50ms / 1e3:,.0f} kN (50-ms mean of the whole force){most.at_height} on "
             f"{most.name}, with an overturning moment of {most.peak_overturning_moment_50ms / 1e3:,.0f} kN m"
             f"{_load_band(case)}",
         )

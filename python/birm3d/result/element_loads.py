@@ -136,6 +136,11 @@ class ElementLoad:
         row = int(np.argmax(_horizontal(force, self.line)))
         return float(resultant_height(force, moment, self.line)[row])
 
+    @property
+    def at_height(self) -> str:
+        """Return ``" at 0.57 m"``, the height of the greatest 50-ms mean; nothing where it has none."""
+        return f" at {self.height_at_peak:.2f} m" if self.height_at_peak > 0.0 else ""
+
     @cached_property
     def peak_overturning_moment(self) -> float:
         """Greatest overturning moment, unfiltered [N m]."""

@@ -81,8 +81,8 @@ def report(result: RunAnalysis) -> str:
         )
     for load in touched_elements(result.element_loads):
         lines.append(
-            f"  {load.name}: peak 50-ms mean of the whole force {kilo_number(load.peak_force_50ms)} kN at "
-            f"{load.height_at_peak:.2f} m, of its {load.lateral_part} "
+            f"  {load.name}: peak 50-ms mean of the whole force {kilo_number(load.peak_force_50ms)} kN"
+            f"{load.at_height}, of its {load.lateral_part} "
             f"{kilo_number(load.peak_lateral_force_50ms)} kN, of the overturning moment "
             f"{kilo_number(load.peak_overturning_moment_50ms)} kN m"
         )
