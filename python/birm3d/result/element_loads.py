@@ -168,7 +168,7 @@ def _horizontal(force: Floats, line: Floats | None) -> Floats:
     """Return the size of the horizontal force, of a wall of its part across the line, shape (n,) [N]."""
     if line is None:
         return np.asarray(np.hypot(force[:, 0], force[:, 1]))
-    return np.abs(force @ np.array([line[1], -line[0], 0.0]))
+    return np.asarray(np.abs(force @ np.array([line[1], -line[0], 0.0])))
 
 
 def overturning(moment: Floats, line: Floats | None = None) -> Floats:
