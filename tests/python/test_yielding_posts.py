@@ -13,8 +13,11 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Foundation, Settings, Simulation, UnitWarning, Vehicle, units
 from birm3d.assessment.design_caution import barrier_caution
+from birm3d.assessment.element_demand import element_design
+from birm3d.assessment.element_design import System
 from birm3d.barrier.yielding import Tube
 from birm3d.reporting.static_force import made_by
+from birm3d.result.element_loads import ElementLoad
 from birm3d.result.element_motion import element_motion
 from birm3d.simulation.scene_file import read_scene_file
 from scipy.integrate import quad
@@ -373,7 +376,7 @@ def test_the_equivalent_static_force_is_what_the_post_passes_on(at_three: birm3d
         assert row.moment == pytest.approx(
             moment, rel=0.1
         )  # the inertia of the post takes and gives the rest
-        assert "moment that the post resists" in made_by(load)  # the headline of the dossier
+        assert "from what the post resists" in made_by(load)  # the headline of the dossier
         assert load.spectrum([0.02, 0.5]).tolist() == [row.equivalent_static_force] * 2
         assert "natural period and ductility do not change" in load.caution
         assert "is assumed" not in load.caution
@@ -387,6 +390,19 @@ def test_the_equivalent_static_force_of_a_foundation_that_turns(car: Vehicle) ->
     load = birm3d.design_load(Simulation(car, posts, units.mph(40)), draws=0, progress=False)
     row = load.governing
     assert row.equivalent_static_force * (row.height + 0.6) == pytest.approx(50e3)
+
+
+def test_the_foot_of_a_yielded_post_under_a_weight_has_the_moment_of_the_run() -> None:
+    """What lies on it has no height, so that no force times an arm is its moment."""
+    weaker = Barrier.bollards(count=3, **TUBE).weaker
+    assert weaker is not None
+    force, moment = np.tile([2e3, 0.0, -9e4], (400, 1)), np.tile([0.0, 8e3, 0.0], (400, 1))
+    load = ElementLoad(0, "bollard 1", force, moment, 1e-3)
+    row = element_design(
+        load, np.array([1.0, 0.0, 0.0]), System(0.1, 1.0, 0.05), weaker=weaker, has_yielded=True
+    )
+    assert row.height == 0.0
+    assert row.equivalent_static_moment == row.moment == pytest.approx(8e3)
 
 
 def test_a_post_that_has_not_yielded_counts_as_elastic(car: Vehicle) -> None:
@@ -422,12 +438,12 @@ def test_an_elastic_force_above_what_a_post_resists_is_not_cut_off() -> None:
         assert row.equivalent_static_force > row.yield_force
         assert row.equivalent_static_force == pytest.approx(rigid.governing.equivalent_static_force, rel=1e-3)
         assert load.spectrum([period])[0] == row.equivalent_static_force
-        assert "On bollard 2 the post does not yield in the scene" in load.caution
-        assert f"it resists {row.yield_force / 1e3:,.0f} kN" in load.caution
-        assert "A post that could yield and has not counts as elastic" in load.basis
-        assert f"elastic: more than the {row.yield_force / 1e3:,.0f} kN that the post resists" in made_by(
-            load
+        assert (
+            "bollard 2 does not yield in the run that its equivalent static force comes from" in load.caution
         )
+        assert f"the post resists {row.yield_force / 1e3:,.0f} kN" in load.caution
+        assert "A post that could yield and has not counts as elastic" in load.basis
+        assert f"elastic: its force is more than the {row.yield_force / 1e3:,.0f} kN" in made_by(load)
         assert "counts as elastic" not in rigid.basis
 
 

@@ -21,6 +21,11 @@ bool is_in_front(const ContactPass& pass, const Indentation& indentation, std::s
     return gap_of_panel(indentation, p, pass.mesh, pass.before, 0.0, least) > least;
 }
 
+// Does no node of the panel stand before the post or face, as they were at the start of the step?
+bool has_no_node(const ContactPass& pass, const Indentation& indentation, std::size_t p) {
+    return gap_of_panel(indentation, p, pass.mesh, pass.before, infinity, -infinity) == infinity;
+}
+
 // Has the post, which is before the panel and deeper than its nodes now, come from in front, and not past the panel's edge?
 bool came_from_in_front(const ContactPass& pass, std::size_t k, std::size_t p, const Indentation& now) {
     const Indentation then = indentation_by(pass.obstacle(k), pass.near[k].before, pass.mesh.panel[p],
@@ -29,8 +34,11 @@ bool came_from_in_front(const ContactPass& pass, std::size_t k, std::size_t p, c
     // A free step ends where the post lies on the nodes to rounding.
     constexpr double least = -tolerance::touching_gap;
     if (beside < 0.0) return is_in_front(pass, then, p, least);
-    // It passed the edge within the step. Where was it at that instant?
-    return is_in_front(pass, between(then, now, beside / (beside - now.beside())), p, least);
+    // It passed the edge within the step. Where was it just past the edge?
+    const double share = (beside + tolerance::touching_gap) / (beside - now.beside());
+    const Indentation at_edge = between(then, now, std::min(1.0, share));
+    // Crushed skin may have left the edge. Then the skin counts before which the post is now.
+    return is_in_front(pass, has_no_node(pass, at_edge, p) ? as_deep_as(now, at_edge) : at_edge, p, least);
 }
 
 // What the obstacle indents in the list; nothing where that does not have it.

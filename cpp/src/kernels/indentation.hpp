@@ -55,7 +55,7 @@
 // (least_outline_depth), which the rounded corner of a front has. A post that misses the bumper does not indent it by meeting
 // the wider body behind: it meets the nodes there as any surface does. For the edge of a wall all nodes count, as the wall's
 // face crushes what is deeper beside it. A post that comes past the panel's edge, deeper than the nodes there, does not indent the
-// panel either. Where it was as it passed the edge decides, by whatever steps.
+// panel either. What decides is where it was as it passed the edge, whatever the length of steps.
 //
 // A post or a face draws in skin above its top only where the panel comes down to it. Below a node the panel ends at its lowest
 // node there (heights_above_edge). If that is above the top, as a load bed's side is beside a low wall, nothing holds the node. A
@@ -122,6 +122,9 @@ struct Indentation : IndentationNumbers {
 
 // The same obstacle and panel at a fraction of the motion from one place to another.
 Indentation between(const Indentation& one, const Indentation& other, double fraction);
+
+// Beside and along the panel as in `place`, and as deep in it as `other`, of the same obstacle and panel.
+Indentation as_deep_as(const Indentation& place, const Indentation& other);
 
 // Is the post upright enough before the panel to indent it? If it is an edge, does one of its faces point at the panel?
 // `motion`: of the panel's body, body axes. `indents`: does the post do so already?

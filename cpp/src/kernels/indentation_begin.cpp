@@ -72,4 +72,12 @@ Indentation between(const Indentation& one, const Indentation& other, double fra
     return middle;
 }
 
+Indentation as_deep_as(const Indentation& place, const Indentation& other) {
+    const Vec3 foot = place.foot() + (other.foot() - place.foot()).dot(place.into()) * place.into();
+    Indentation moved = place;
+    moved.ox = foot.x(), moved.oy = foot.y(), moved.oz = foot.z();
+    moved.surface = other.surface;
+    return moved;
+}
+
 }  // namespace birm3d

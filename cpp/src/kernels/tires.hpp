@@ -35,8 +35,8 @@ void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& sta
 // Can any wheel give way?
 bool may_give_way(const Unit& unit);
 
-// Updates the loads of the wheels by their normal impulses in a step of dt (s), impacts included: N' = (F - N) / 10 ms (N).
-// A rigid wheel has its load at once, as a blow that no spring has. Real springs and tyres take about 10 ms.
+// Updates the loads N of the wheels (N) by their normal impulses in a step of dt (s), impacts included. With the force F of a
+// step, dN/dt = (F - N) / 10 ms. A rigid wheel stops in one step. Real springs and tyres take about 10 ms.
 void follow_loads(double dt, std::span<const double> normal_impulses, std::span<double> loads);
 
 // The wheels that give way under these loads.

@@ -70,7 +70,8 @@ bool has_turned_away(const Scene& scene, const State& state, bool at_end, const 
 }
 
 // A vehicle that was stopped or redirected has passed if it comes past an end of the barrier afterwards, on a curved path. One
-// that seemed to pass, and turned away before the line, has not passed. One that was turned back is judged until it is clear. `at_end`: is the run over? Then what moves towards the line has passed.
+// that seemed to pass, and turned away before the line, has not passed. One that was turned back is judged until it is clear.
+// `at_end`: is the run over? Then what moves towards the line has passed.
 void revise(const Scene& scene, const State& state, bool at_end, Event& event) {
     if (!event.left || event.clear || event.touching || event.rolled_over() || runs_along_line(scene)) return;
     if (has_turned_away(scene, state, at_end, event)) {

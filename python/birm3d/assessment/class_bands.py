@@ -35,8 +35,8 @@ _BLOWS_OF_PEAKS = (
     "values of peak force rest on that blow and are too high."
 )
 _BEYOND_YIELD = (
-    "With {n} of {all} vehicles of the class a post that does not yield in the run is asked for more than it "
-    "resists, as an elastic system."
+    "With {n} of {all} vehicles of the class a post does not yield in the run, but the elastic equivalent "
+    "static force is more than it resists."
 )
 _BELOW = (
     "On {elements}, {values} of this vehicle {verb} below the band: do not design with it. Most vehicles "

@@ -87,12 +87,12 @@ def design_load(
     (Biggs, Introduction to Structural Dynamics, 1964). At ductility 1 it is m w^2 max|u|, the peak force
     times the dynamic load factor. Above, it is the resistance R of the elastic-plastic system for which
     max|u| = ductility R / (m w^2). See :mod:`birm3d.assessment.oscillator`. The equivalent static moment is
-    the same of the moment about the foot, for a system that turns about it. A post that could yield and has
-    not counts as elastic.
+    made in the same way from the moment about the foot, for a system that turns about it. A post that could
+    yield and has not counts as elastic.
 
-    Of a post that yields in the run it is that of statics: the moment that the post resists over its arm. The
-    moment is that of tube or foundation. The arm is the height of the 50-ms force above the point about which
-    the post turns. That is the capacity design of foundations, as in
+    Of a post that yields in the run the equivalent static force follows from statics: it is the moment that
+    tube or foundation resists, divided by the arm. The arm is the height of the 50-ms force above the point
+    about which the post turns. That is the capacity design of foundations, as in
     EN 1998-1, 4.4.2.6, without its factor for overstrength. The run has spent the yielding already, so that
     natural period and ductility do not change this force. It is at most twice the peak force, as no single
     pulse has a greater dynamic load factor.

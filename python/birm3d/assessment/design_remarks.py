@@ -34,9 +34,9 @@ _STATICS = (
     "has spent the yielding already."
 )
 _BEYOND_YIELD = (
-    "On {element} the post does not yield in the scene of its equivalent static force. As an elastic system "
-    "it would: it resists {resists:,.0f} kN, and that force is {asked:,.0f} kN. Its foundation gets what the "
-    "post resists, with the upper bound of its strength, and no more than the elastic response."
+    "{element} does not yield in the run that its equivalent static force comes from. That force, of an "
+    "elastic system, is {asked:,.0f} kN, and the post resists {resists:,.0f} kN. Design its foundation for "
+    "the lesser of two: what the post resists with the upper bound of its strength, and the elastic force."
 )
 _LOWEST = "Of several scenes, that force comes from the one with the shortest arm."
 

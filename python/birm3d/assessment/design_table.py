@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import csv
-import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -336,7 +335,7 @@ class DesignLoad:
                     row.load,
                     direction,
                     system._replace(natural_period=period),
-                    yields=math.isfinite(row.yield_force),
+                    yields=row.can_yield,
                 )
                 for period in wanted.tolist()
             ]
@@ -454,7 +453,7 @@ def _of_yielding(rows: tuple[ElementDesign, ...]) -> str:
         text += (
             " Where a post yields, the force is the moment that it resists over the arm of the 50-ms force."
         )
-    if any(math.isfinite(row.yield_force) and not row.has_yielded for row in rows):
+    if any(row.can_yield and not row.has_yielded for row in rows):
         text += " A post that could yield and has not counts as elastic."
     return text
 

@@ -57,9 +57,10 @@ def element_design(
     height = float(resultant_height(force, moment, load.line)[row])
     peak = float(lateral_level(filtered, load, normal).max())
     most = math.inf if weaker is None else weaker.greatest_load(height)
+    most_moment = float(overturning(moment, load.line).max())
     if has_yielded:
         static = min(most, _MOST_OF_ONE_PULSE * peak)
-        static_moment = static * height
+        static_moment = static * height if height > 0.0 else most_moment
     else:
         static = static_force(load, direction, system, yields=weaker is not None)
         static_moment = _static_moment(load, direction, system, yields=weaker is not None)
@@ -73,7 +74,7 @@ def element_design(
         longitudinal_force_50ms=float(np.abs(force @ _left_of(normal)).max()),
         height=height,
         direction=degrees_between(normal, direction),
-        moment=float(overturning(moment, load.line).max()),
+        moment=most_moment,
         equivalent_static_force=static,
         equivalent_static_moment=static_moment,
         yield_force=most,

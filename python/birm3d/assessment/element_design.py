@@ -106,7 +106,8 @@ class ElementDesign:
         Static moment about the foot that asks as much of the same system as the unfiltered overturning
         moment [N m]: what the foot gets together with ``equivalent_static_force``. An element that turns
         about its foot is driven by that moment. So it is exact for one, where the force times ``height`` has
-        one arm for all of the impact. Of a post that has yielded it is the force times ``height``.
+        one arm for all of the impact. Of a post that has yielded it is the force times ``height``, or
+        ``moment`` where the load has no height.
     yield_force : float
         Of posts that yield: the moment that resists over the height of the 50-ms force above the point about
         which the post turns, in the scene of ``equivalent_static_force`` [N]. Infinite of all others.
@@ -166,6 +167,11 @@ class ElementDesign:
         pass on to its foundation.
         """
         return not self.has_yielded and self.equivalent_static_force > self.yield_force
+
+    @property
+    def can_yield(self) -> bool:
+        """Whether it is a post that could yield, whether it does or not."""
+        return math.isfinite(self.yield_force)
 
     @cached_property
     def load(self) -> ElementLoad | None:

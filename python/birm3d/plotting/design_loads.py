@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -188,13 +187,13 @@ def _spectrum(axes: Axes, loads: DesignLoad, row: ElementDesign) -> None:
     own = loads.natural_period
     label = "moment that the post resists" if row.has_yielded else "elastic"
     wanted = [(1.0, GREEN, label, _POINTS)]
-    if loads.ductility > 1.0 and row.yield_force == math.inf:
+    if loads.ductility > 1.0 and not row.can_yield:
         wanted.append((loads.ductility, RED, f"ductility {loads.ductility:g}", _SOFT_POINTS))
     for ductility, color, label, points in wanted:
         periods = np.unique([own, *np.geomspace(min(low, own), max(_PERIODS[1], own), points)])
         found = loads.spectrum(periods, row.index, ductility)
         axes.semilogx(periods, found / row.peak_force, color=color, ls="-", lw=1.8, label=label)
-    if math.isfinite(row.yield_force) and not row.has_yielded:
+    if row.can_yield and not row.has_yielded:
         label = f"what the post resists, {row.yield_force / 1e3:,.0f} kN"
         axes.axhline(row.yield_force / row.peak_force, color=BLUE, ls=DASHED, lw=1.4, label=label)
     axes.plot([own], [row.dynamic_load_factor], "o", color=RED, ms=7, mec="w", ls="none", zorder=6)

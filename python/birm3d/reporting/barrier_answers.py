@@ -81,11 +81,14 @@ def foundation_answer(case: Case) -> Iterator[tuple[str, str]]:
         )
     elif isinstance(case.design_loads, DesignLoad) and loads:
         row = case.design_loads.governing
+        height = (
+            f" at {row.design['height']:.2f} m" if row.design["height"] > 0.0 else ", mostly from its weight"
+        )
         alone = "this run alone, " if case.study is not None and len(case.design_loads.scenes) == 1 else ""
         yield (
             "What does its foundation have to carry?",
             f"{alone}{row.name}: {'design with an ' if row.band else ''}equivalent static force "
-            f"{row.design['equivalent_static_force'] / 1e3:,.0f} kN at {row.design['height']:.2f} m, "
+            f"{row.design['equivalent_static_force'] / 1e3:,.0f} kN{height}, "
             f"moment at the foot {row.design['moment'] / 1e3:,.0f} kN m, "
             f"{made_by(case.design_loads)}{band_of_design(row)}",
         )

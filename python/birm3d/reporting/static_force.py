@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from ..assessment.design_remarks import ASSUMED, greatest_of_periods
 from ..assessment.design_table import DesignLoad
 from ..assessment.element_design import ElementDesign
@@ -12,21 +10,26 @@ __all__ = ["band_of_design", "made_by"]
 
 
 def made_by(loads: DesignLoad) -> str:
-    """Return the moment of the equivalent static force of the governing element, and what both are made from.
+    """Return what stands behind the 50-ms moment of the governing element in a line.
 
-    It follows the 50-ms moment in a line, and says that this has no dynamic factor.
+    It says that this moment has no dynamic factor, names the equivalent static moment, and tells how that and
+    the equivalent static force are made.
     """
     row = loads.governing
     moment = row.design["equivalent_static_moment"] / 1e3
     moments = f"a 50-ms mean without dynamic factor; equivalent static moment {moment:,.0f} kN m"
     if row.has_yielded:
-        return f"{moments}, from the moment that the post resists; what is stronger than given asks for more"
+        return (
+            f"{moments}, from what the post resists; a stronger post or foundation than given asks for more"
+        )
     period = f"{moments}, natural period {loads.natural_period:g} s{_assumed(loads)}"
-    if not math.isfinite(row.yield_force):
+    if not row.can_yield:
         return f"{period}, ductility {loads.ductility:g}"
     if not row.exceeds_yield:
         return f"{period}, elastic"
-    return f"{period}, elastic: more than the {row.yield_force / 1e3:,.0f} kN that the post resists"
+    return (
+        f"{period}, elastic: its force is more than the {row.yield_force / 1e3:,.0f} kN that the post resists"
+    )
 
 
 def _assumed(loads: DesignLoad) -> str:

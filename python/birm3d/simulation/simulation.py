@@ -218,10 +218,7 @@ class Simulation:
         self._run_time = 0.0
 
     def state_hash(self) -> int:
-        """Return a 64-bit hash of time, bodies, trusses, indentations and the sum of energies, bit by bit.
-
-        Equal hashes mean that these are equal. How steps go on also depends on loads before the last step.
-        """
+        """Return a 64-bit hash of bodies, wheels, trusses, indentations, energies; not of the last loads."""
         with self._core:
             return self._core.state_hash
 

@@ -11,7 +11,7 @@ class InvalidArgument : public std::invalid_argument {
     using std::invalid_argument::invalid_argument;
 };
 
-// A fixed step lies beyond what the scene allows, or the scene allows no step worth taking.
+// A fixed step is longer than the limit of stability, or that limit is too short to compute the scene with.
 class UnstableError : public std::runtime_error {
   public:
     UnstableError(const std::string& text, double time_step, double limit, double time);
