@@ -93,7 +93,7 @@ BIRM3D_INLINE Packet gap_of_free(const IndentationNumbers& indentation, const Kn
 }
 
 // Gap of loaded nodes under the indentation (m): their displacement du within the step, so that their depth u follows the post.
-// A node that another surface holds follows the indentation only once that has reached it.
+// A node that another surface holds, as the ground, follows the indentation only once that is within `in_reach` of it.
 BIRM3D_INLINE Packet gap_of_loaded(const IndentationNumbers& indentation, const KnownFaces& known,
                                    const FollowedPlace& followed, const Packet& outward, std::size_t i) {
     const Packet zero = 0.0, far = infinitely_far;

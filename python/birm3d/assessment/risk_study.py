@@ -84,7 +84,7 @@ class RiskStudy:
 
     @property
     def _heavy(self) -> list[str]:
-        """Return that no standard judges the occupants of some of the vehicles, if so."""
+        """Return that no standard judges the occupants, if that is so of any of the vehicles."""
         return [NOT_JUDGED] if any(risk.is_heavy for risk in self.risks) else []
 
     def summary(self) -> str:
