@@ -343,7 +343,8 @@ def test_a_vehicle_that_turns_away_before_the_line_has_not_passed(
 ) -> None:
     """A car beside a pole still nears the line as it leaves, by 3 to 8 degrees. Its tyres turn it away.
 
-    Its mass centre stays 0.58 m from the line, at any tolerance. It was called "passed" from 0.9 of its half width on.
+    Its mass centre stays 0.58 m from the line, at any tolerance. From 0.9 of its half width on it was called
+    "passed".
     """
     car = Vehicle.preset("passenger_car")
     result = Simulation(car, Barrier.pole(diameter=0.6), 14.0, 90.0, 0.9 * share, duration=duration).run()
