@@ -21,15 +21,9 @@ bool is_in_front(const ContactPass& pass, const Indentation& indentation, std::s
     return gap_of_panel(indentation, p, pass.mesh, pass.before, 0.0, least) > least;
 }
 
-// Does no node of the panel stand before the post or face, as they were at the start of the step?
-bool has_no_node(const ContactPass& pass, const Indentation& indentation, std::size_t p) {
-    return gap_of_panel(indentation, p, pass.mesh, pass.before, infinity, -infinity) == infinity;
-}
-
 // Has the post, which is before the panel and deeper than its nodes now, come from in front, and not past the panel's edge?
-bool came_from_in_front(const ContactPass& pass, std::size_t k, std::size_t p, const Indentation& now) {
-    const Indentation then = indentation_by(pass.obstacle(k), pass.near[k].before, pass.mesh.panel[p],
-                                            pass.mesh, pass.scene.settings);
+bool came_from_in_front(const ContactPass& pass, std::size_t p, const Indentation& then,
+                        const Indentation& now) {
     const double beside = then.beside();
     // A free step ends where the post lies on the nodes to rounding.
     constexpr double least = -tolerance::touching_gap;
@@ -37,8 +31,9 @@ bool came_from_in_front(const ContactPass& pass, std::size_t k, std::size_t p, c
     // It passed the edge within the step. Where was it just past the edge?
     const double share = (beside + tolerance::touching_gap) / (beside - now.beside());
     const Indentation at_edge = between(then, now, std::min(1.0, share));
+    const double gap = gap_of_panel(at_edge, p, pass.mesh, pass.before, infinity, least);
     // Crushed skin may have left the edge. Then the skin counts before which the post is now.
-    return is_in_front(pass, has_no_node(pass, at_edge, p) ? as_deep_as(now, at_edge) : at_edge, p, least);
+    return gap < infinity ? gap > least : is_in_front(pass, as_deep_as(now, at_edge), p, least);
 }
 
 // What the obstacle indents in the list; nothing where that does not have it.
@@ -70,13 +65,13 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
             now.passed |= bit;
             continue;
         }
-        // Bound of how far the post can have moved in, and nodes can have moved off it, within the step.
-        const double growth = 2.0 * pass.margin * indentation.fastest_growth(panel);
         if (!(indents && pushes) && is_in_front(pass, indentation, p, 0.0)) continue;
-        if (indents || (!passed && came_from_in_front(pass, k, p, indentation))) {
+        const Indentation then = indentation_by(obstacle, near.before, panel, mesh, pass.scene.settings);
+        if (indents || (!passed && came_from_in_front(pass, p, then, indentation))) {
             now.panels |= bit;
-            list.push_back({k, p, indentation,
-                            indentation_by(obstacle, near.before, panel, mesh, pass.scene.settings), growth});
+            // Bound of how far the post can have moved in, and nodes can have moved off it, within the step.
+            const double growth = 2.0 * pass.margin * indentation.fastest_growth(panel);
+            list.push_back({k, p, indentation, then, growth});
         } else {
             now.passed |= bit;
         }

@@ -54,9 +54,8 @@ void move_unit(const Scene& scene, std::size_t u, const State& from, Trial& tria
     trial.critical_step = std::min(trial.critical_step, critical_step(scene, unit.body, moved));
 }
 
-// Wheels whose springs give way carry nothing any more. What their springs had stored is lost.
-void give_way(const Unit& model, Trial& trial, std::size_t u, UnitMotion& unit) {
-    if (!may_give_way(model)) return;
+// Updates the loads by which the wheels of a unit give way: by the impulses of the whole step, impacts included.
+void follow_wheel_loads(const Trial& trial, std::size_t u, UnitMotion& unit) {
     Column sum = trial.impulses[u].tire;
     for (const Impact* impact : {&trial.at_start, &trial.at_end})
         if (impact->happened)
@@ -64,9 +63,12 @@ void give_way(const Unit& model, Trial& trial, std::size_t u, UnitMotion& unit) 
                 sum[i] += impact->impulses[u].tire[i];
     unit.wheel_loads.resize(sum.size());
     follow_loads(trial.dt, sum, unit.wheel_loads);
+}
+
+// Wheels whose springs give way carry nothing any more. What their springs had stored is lost.
+void give_way(const Unit& model, UnitMotion& unit, Energies& energies) {
     const WheelSet gone = overloaded(model, unit.wheel_loads);
     if ((gone & ~unit.given_way) == 0) return;
-    Energies& energies = trial.state.energies;
     const double before = spring_energy(model, unit.body, unit.given_way);
     unit.given_way |= gone;
     const double lost = before - spring_energy(model, unit.body, unit.given_way);
@@ -106,10 +108,14 @@ void accept(const Scene& scene, Trial& trial, State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         UnitState& unit = state.units[u];
         static_cast<UnitMotion&>(unit) = trial.state.units[u];
-        give_way(scene.vehicle->units[u], trial, u, unit);
+        const Unit& model = scene.vehicle->units[u];
+        if (may_give_way(model)) {
+            follow_wheel_loads(trial, u, unit);
+            give_way(model, unit, trial.state.energies);
+        }
         trial.exchange_trusses(u, unit.trusses);
         const std::vector<std::size_t>& active = trial.active[u].blocks();
-        if (!active.empty()) unit.trusses.group(scene.vehicle->units[u].trusses, active);
+        if (!active.empty()) unit.trusses.group(model.trusses, active);
     }
     static_cast<Progress&>(state) = trial.state;
     state.moving_elements = trial.state.moving_elements;

@@ -200,7 +200,7 @@ class ElementDesign:
         }
 
     def __repr__(self) -> str:
-        force, moment = (self.design[name] for name in ENVELOPED[-2:])
+        force, moment = self.design["equivalent_static_force"], self.design["equivalent_static_moment"]
         design = f"; design: {force:.4g} N, {moment:.4g} N m" if self.band else ""
         return (
             f"ElementDesign({self.name!r}, force_50ms={self.force_50ms:.4g} N at {self.height:.2f} m, "

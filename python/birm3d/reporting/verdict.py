@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 
 from ..assessment import OccupantRisk, Rating
 from ..assessment.criteria import Criterion
-from ..assessment.vehicles import HEAVY_KG
 from ..result.element_loads import touched_elements
 from ..result.event import outcome_words
 from ..vehicle.title import kind_words
@@ -189,7 +188,7 @@ def _risk_line(case: Case) -> str:
         found = case.bands.risk
         good = round(found.passed(standard) * len(found.risks))
         others = f". {good} of {len(found.risks)} vehicles of the class meet all of them"
-    if case.result.scene.vehicle.mass >= HEAVY_KG:
+    if case.risk.is_heavy:
         told = f"{standard} does not judge this for so heavy a vehicle"
         if failed and not asked:
             return f"{told}; its limits for cars and pickups are exceeded: {', '.join(failed)}{others}"
@@ -229,7 +228,7 @@ def risk_section(case: Case) -> Section:
     )
     blocks: list[Block] = [
         Text(when),
-        *([Caution(NOT_JUDGED)] if case.result.scene.vehicle.mass >= HEAVY_KG else []),
+        *([Caution(NOT_JUDGED)] if case.risk.is_heavy else []),
         _risk_table(case, case.risk),
         *(Text(text) for text in case.risk.missing),
         Caution(CAUTION),

@@ -121,10 +121,7 @@ class ElementLoad:
 
         Design loads have this force. The whole one, with its parts up and along the line, is greater.
         """
-        force = self._mean[0][:, :2]
-        if self.line is not None:
-            return float(np.abs(force @ np.array([self.line[1], -self.line[0]])).max())
-        return float(np.hypot(force[:, 0], force[:, 1]).max())
+        return float(_horizontal(self._mean[0], self.line).max())
 
     @cached_property
     def height_at_peak(self) -> float:

@@ -6,7 +6,7 @@
 
 namespace birm3d {
 
-// All in J. At the start all but `kinetic` are zero.
+// All in J. A run starts with `kinetic` alone; all others are zero.
 struct Energies {
     double kinetic = 0.0, potential = 0.0, stored = 0.0, crushed = 0.0;
     double barrier_friction = 0.0, tire_friction = 0.0, ground_friction = 0.0;
