@@ -31,7 +31,6 @@ _SHORT = {
 """Short path -> where the module is, both below ``birm3d``."""
 
 _OLD = {
-    "along_panel": "vehicle.along_panel",
     "arguments": "base.arguments",
     "articulated": "vehicle.vehicle",
     "barrier.base": "barrier.barrier",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle, rate, units
-from tires import held_straight
 
 
 @pytest.fixture(scope="module")
@@ -75,11 +74,13 @@ def test_the_sentence_says_which_unit_rolled_over() -> None:
 
 def test_an_undecided_run_of_the_longest_duration_asks_for_a_longer_one() -> None:
     """It asked for duration=None, which the run had."""
-    truck = held_straight(Vehicle.preset("mash_10000s", mesh_density=0.3))
-    result = Simulation(truck, Barrier.rigid_wall(height=0.35), 25.0, 10.0).run()
+    car = Vehicle.preset("mash_1100c", mesh_density=0.3)
+    result = Simulation(
+        car, Barrier.rigid_wall(), 6.0, 90.0, standoff=113.74
+    ).run()  # it meets the wall at 29.97 s
     assert (result.outcome, result.end_reason) == ("undecided", "longest")
-    with pytest.raises(ValueError, match=r"\(a duration above 5 s\), got one that ends at 5 s"):
-        rate(result, "MASH")
+    with pytest.raises(ValueError, match=r"\(a duration above 30 s\), got one that ends at 30 s"):
+        rate(result, "ASTM F2656")
 
 
 @pytest.mark.parametrize(

@@ -176,7 +176,7 @@ def test_points_found_inside_a_thin_wall_are_not_thrown_out() -> None:
         14.0,
         19.8186,
         0.3,
-        impact_yaw=-100.0,
+        impact_yaw=-99.0,
         duration=0.61,
         settings=Settings(tolerance=1.14350e-3),
     )

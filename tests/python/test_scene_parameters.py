@@ -124,7 +124,8 @@ def test_mesh_density_keeps_what_was_changed() -> None:
     assert finer.mass == car.mass
     assert finer.zones["bumper"] == car.zones["bumper"]
     # A coarser mesh cuts the corners of the outline.
-    assert finer.area.sum() == pytest.approx(car.area.sum(), rel=5e-3)
+    areas = [vehicle.area[vehicle.along_of_node < 0].sum() for vehicle in (finer, car)]
+    assert areas[0] == pytest.approx(areas[1], rel=5e-3)
 
 
 @pytest.mark.parametrize(

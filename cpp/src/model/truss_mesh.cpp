@@ -66,10 +66,6 @@ void require_valid(const TrussInput& input, std::size_t wheels) {
     }
 }
 
-Box box_around(const std::vector<Vec3>& points) {
-    return Box::around(points.size(), [&](std::size_t i) { return points[i]; });
-}
-
 // Position in the space in which trusses are sorted: the node, and the direction of the truss as half a metre. The
 // direction separates the two sides of a corner of the vehicle.
 using Site = std::array<double, 6>;
@@ -130,13 +126,6 @@ std::vector<std::vector<std::size_t>> parts_of(const TrussInput& input, std::siz
     return part;
 }
 
-// Panel of a truss with the direction `inward`: two for each axis, the positive direction first.
-std::size_t panel_of(const Vec3& inward) {
-    Eigen::Index axis = 0;
-    inward.cwiseAbs().maxCoeff(&axis);
-    return 2 * static_cast<std::size_t>(axis) + (inward[axis] < 0.0 ? 1 : 0);
-}
-
 Box box_around(const BlockColumn& x, const BlockColumn& y, const BlockColumn& z) {
     return Box::around(block_size, [&](std::size_t i) { return Vec3(x[i], y[i], z[i]); });
 }
@@ -185,43 +174,6 @@ void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wh
         const auto w = static_cast<std::size_t>(input.wheel_of[source]);
         const Vec3 d = input.node[source] - wheels[w].center;
         tire_nodes.fill().push_back({d.z() / wheels[w].radius, -d.x() / wheels[w].radius, w});
-    }
-}
-
-void TrussMesh::find_panels(const TrussInput& input) {
-    std::array<std::vector<Vec3>, panels> nodes, anchors_of;
-    std::array<std::vector<std::size_t>, panels> slots;
-    panels_of.fill().assign(blocks, 0);
-    for (std::size_t b = 0; b < skin_blocks; ++b) {
-        BlockColumn& panel_of_node = block.fill()[b].panel;
-        for (std::size_t i = 0; i < nodes_in(b); ++i) {
-            const std::size_t source = input_index[first[b] + i];
-            const std::size_t p = panel_of(input.anchor[source] - input.node[source]);
-            panel_of_node[i] = static_cast<double>(p);
-            panels_of.fill()[b] |= static_cast<std::uint8_t>(1U << p);
-            nodes[p].push_back(input.node[source]);
-            anchors_of[p].push_back(input.anchor[source]);
-            slots[p].push_back(b * block_size + i);
-        }
-        std::fill(panel_of_node.begin() + static_cast<std::ptrdiff_t>(nodes_in(b)), panel_of_node.end(),
-                  panel_of_node[nodes_in(b) - 1]);
-    }
-    for (std::size_t b = skin_blocks; b < blocks; ++b)
-        block.fill()[b].panel.fill(static_cast<double>(panels)),
-            panels_of.fill()[b] = 1U << panels;  // of none of these
-    panels_of_group.fill().assign((blocks + group_size - 1) / group_size, 0);
-    for (std::size_t b = 0; b < blocks; ++b)
-        panels_of_group.fill()[b / group_size] |= panels_of[b];
-    for (std::size_t p = 0; p < panels; ++p) {
-        const double sign = p % 2 == 0 ? 1.0 : -1.0;
-        panel[p] = {sign * Vec3::Unit(static_cast<Eigen::Index>(p / 2)), {}, {}, !nodes[p].empty()};
-        if (!panel[p].any) continue;
-        panel[p].box = box_around(nodes[p]);
-        panel[p].anchors = box_around(anchors_of[p]);
-        panel[p].outlines = outlines_of(nodes[p], panel[p].inward);
-        const std::vector<double> heights = heights_above_edge(nodes[p], panel[p].inward);
-        for (std::size_t k = 0; k < heights.size(); ++k)
-            block.fill()[slots[p][k] / block_size].height_above_edge[slots[p][k] % block_size] = heights[k];
     }
 }
 

@@ -131,7 +131,8 @@ def _unit_blocks(unit: Vehicle) -> Iterator[Block]:
         note = "The file's solids meet these bands."
         yield Table(f"{unit.title}: mass properties and their bands", head, rows, note=note)
     laws = {zone.name: zone for zone in file.zones}
-    laws.update({zone.along_name: zone.along for zone in file.zones if zone.along is not None})
+    for zone in file.zones:
+        laws.update(zone.second_laws)
     yield Table(
         f"{unit.title}: stiffness zones",
         ("zone", "law per unit of area", "status", "source"),
@@ -159,9 +160,9 @@ def _remarks(zone: Any, changed: bool) -> tuple[str, str]:
 
 
 def _zone_words(name: str) -> str:
-    """Return a zone in words; ``door.along`` is the law of the door's panel in its own plane."""
-    zone, _, along = plain_words(name).partition(".")
-    return f"{zone}, along the vehicle" if along else zone
+    """Return a zone in words; ``door.along`` is what the door resists along the vehicle."""
+    zone, _, second = plain_words(name).partition(".")
+    return f"{zone}, {second} the vehicle" if second else zone
 
 
 def _law(law: Any) -> str:

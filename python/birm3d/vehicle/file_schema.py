@@ -21,7 +21,6 @@ from .skin_mesh import SkinMesh
 from .zone_law import OF_WHEELS, NonNegative, Positive, ZoneLaw
 
 __all__ = [
-    "AlongLaw",
     "Assumption",
     "Block",
     "CoreBox",
@@ -53,7 +52,7 @@ __all__ = [
 Point: TypeAlias = tuple[float, float, float]
 Range: TypeAlias = tuple[float, float]
 Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
-LawName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*(\.along)?$")]
+LawName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*(\.(along|across))?$")]
 Panel: TypeAlias = Literal["front", "rear", "side", "top", "bottom", "tire"]
 # Text that may be broken over several lines of the file.
 Text: TypeAlias = Annotated[str, Field(min_length=1), AfterValidator(lambda text: " ".join(text.split()))]
@@ -546,11 +545,11 @@ class Bed(Block):
         return self
 
 
-class AlongLaw(Block, ZoneLaw):
-    """Stiffness of a panel in its own plane, along the vehicle, per unit of the panel's area."""
+class SecondLaw(Block, ZoneLaw):
+    """What a panel resists along or across the vehicle, beside its own law, per unit of the panel's area."""
 
     @model_validator(mode="after")
-    def _check(self) -> AlongLaw:
+    def _check(self) -> SecondLaw:
         self.require_law()
         return self
 
@@ -567,7 +566,8 @@ class Zone(Block, ZoneLaw):
     area is the tread's. Without such a zone tyres meet the ground only.
 
     The law: see ZoneLaw. A second one, ``along``, is what a panel that does not look forward or backward
-    resists along the vehicle (:mod:`birm3d.vehicle.along_panel`).
+    resists along the vehicle; another, ``across``, what a side resists across it
+    (:mod:`birm3d.vehicle.second_trusses`).
     """
 
     name: Name
@@ -577,12 +577,15 @@ class Zone(Block, ZoneLaw):
     y_m: Range | None = None
     z_m: Range | None = None
     core: tuple[Name, ...] = ()
-    along: AlongLaw | None = None
+    along: SecondLaw | None = None
+    across: SecondLaw | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Zone:
         if self.along is not None and (other := set(self.panels) - {"side", "top", "bottom"}):
             reject("along", f"must be in a zone of the panels side, top and bottom, got {min(other)}")
+        if self.across is not None and "side" not in self.panels:
+            reject("across", f"must be in a zone of the panel side, got {', '.join(self.panels)}")
         if "tire" in self.panels:
             for key, value in (("blocks", self.blocks), ("core", self.core), ("panels", self.panels[1:])):
                 if value:
@@ -634,17 +637,30 @@ class Zone(Block, ZoneLaw):
             reject("f_max_Pa", message)
 
     def scaled(self, factor: float, stretch: float = 1.0, along: Factors | None = None) -> Zone:
-        """Return the zone with stresses and deflections times two factors; `along` its panels: the same."""
+        """Return the zone with stresses and deflections times two factors; `along` the vehicle others."""
         changes = ZoneLaw.numbers_of(self.law.scaled(factor, stretch))
-        if self.along is not None:
-            law = self.along.law.scaled(*(along if along is not None else (factor, stretch)))
-            changes["along"] = self.along.changed(ZoneLaw.numbers_of(law))
+        mine = (factor, stretch)
+        for key, factors in (("along", mine if along is None else along), ("across", mine)):
+            second: SecondLaw | None = getattr(self, key)
+            if second is not None:
+                changes[key] = second.changed(ZoneLaw.numbers_of(second.law.scaled(*factors)))
         return self.changed(changes)
 
     @property
+    def second_laws(self) -> dict[str, SecondLaw]:
+        """Laws along and across the vehicle, where given, by their names: ``door.along``."""
+        laws = {self.along_name: self.along, self.across_name: self.across}
+        return {name: law for name, law in laws.items() if law is not None}
+
+    @property
     def along_name(self) -> str:
-        """Name of the law along the panel."""
+        """Name of the law along the vehicle."""
         return f"{self.name}.along"
+
+    @property
+    def across_name(self) -> str:
+        """Name of the law across the vehicle."""
+        return f"{self.name}.across"
 
     @property
     def envelope(self) -> tuple[tuple[float, float], ...]:

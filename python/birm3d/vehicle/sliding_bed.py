@@ -169,7 +169,7 @@ def _base_height(file: VehicleFile, bed: Bed) -> float:
 def _part(file: VehicleFile, **changes: Any) -> VehicleFile:
     """Return the file of one part, without what it needs no more."""
     zones = changes["zones"]
-    laws = {name for zone in zones for name in (zone.name, zone.along_name)}
+    laws = {name for zone in zones for name in (zone.name, *zone.second_laws)}
     scatter = [
         one.changed({"zones": tuple(name for name in one.zones if name in laws)}) for one in file.scatter
     ]

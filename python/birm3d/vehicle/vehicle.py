@@ -61,14 +61,15 @@ class Vehicle(OldVehicleNames):
     nodes, anchors : ndarray, shape (n, 3)
         Uncrushed nodes, and the points that their trusses start from [m]. First come those of the shell,
         whose anchors are points of the rigid body. Then those of second trusses
-        (:mod:`birm3d.vehicle.along_panel`), then of the treads by which tyres meet barriers
+        (:mod:`birm3d.vehicle.second_trusses`), then of the treads by which tyres meet barriers
         (:mod:`birm3d.vehicle.tire_nodes`).
     area : ndarray, shape (n,)
         Tributary area of each node [m^2]; 1 for vehicles made from arrays.
     wheel_of_node : ndarray of int, shape (n,)
         Index of the wheel whose tread the node is on; -1 for nodes of the shell.
     along_of_node : ndarray of int, shape (n,)
-        Number of the node whose second truss, along the vehicle, this node carries; -1 for all others.
+        Number of the node whose second truss, along the vehicle or across it, this node carries; -1 for
+        all others.
     zone_of_node : ndarray of int, shape (n,)
         Index into ``zones``; -1 for vehicles made from arrays.
     quads : ndarray of int, shape (m, 4)

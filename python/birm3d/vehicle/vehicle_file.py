@@ -211,8 +211,8 @@ class VehicleFile(Strict):
                 yield f"{key}.{i}", item
         for zone in self.zones:
             yield f"zone.{zone.name}", zone
-            if zone.along is not None:
-                yield f"zone.{zone.along_name}", zone.along
+            for name, second in zone.second_laws.items():
+                yield f"zone.{name}", second
 
     @property
     def solids_mass(self) -> float:
@@ -236,6 +236,7 @@ class VehicleFile(Strict):
         factors = {}
         for zone in self.zones:
             factors[zone.name] = Factors.mean(panels[name] for name in zone.panels)
+            factors[zone.across_name] = factors[zone.name]
             factors[zone.along_name] = panels["along"]
         return {name: one._replace(stress=strength * one.stress) for name, one in factors.items()}
 
@@ -277,9 +278,9 @@ class VehicleFile(Strict):
 
     @property
     def laws(self) -> dict[str, LawOfZone]:
-        """Laws of the zones by their names, in order, then those along their panels: ``door.along``."""
-        along = {zone.along_name: zone.along.law for zone in self.zones if zone.along is not None}
-        return {**{zone.name: zone.law for zone in self.zones}, **along}
+        """Laws of the zones by their names, in order, then their second ones: ``door.along``."""
+        second = {name: one.law for zone in self.zones for name, one in zone.second_laws.items()}
+        return {**{zone.name: zone.law for zone in self.zones}, **second}
 
     @property
     def zone_names(self) -> tuple[str, ...]:

@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .along_panel import build_along
 from .front_height import strong_height
 from .mesher import build_mesh
+from .second_trusses import build_second
 from .tire_nodes import build_tread, zones_of_wheels
 from .vehicle_file import VehicleFile
 from .zone import Zone
@@ -181,8 +181,8 @@ def shape_of(file: VehicleFile, mesh_density: float) -> VehicleShape:
         What :func:`birm3d.vehicle.mesher.build_mesh` and :func:`birm3d.vehicle.tire_nodes.build_tread` raise.
     """
     mesh, tread = build_mesh(file, mesh_density), build_tread(file, mesh_density)
-    along = build_along(file, mesh)
-    parts = (mesh, along, tread)
+    second = build_second(file, mesh)
+    parts = (mesh, second, tread)
     none = [np.full(len(part.nodes), -1, np.int64) for part in parts]
     wheels = np.array([[*wheel.center_m, wheel.radius_m] for wheel in file.wheels], float).reshape(-1, 4)
     return VehicleShape(
@@ -191,7 +191,7 @@ def shape_of(file: VehicleFile, mesh_density: float) -> VehicleShape:
         area=np.concatenate([part.area for part in parts]),
         zone_of_node=np.concatenate([part.zone for part in parts]),
         wheel_of_node=np.concatenate([none[0], none[1], tread.wheel]),
-        along_of_node=np.concatenate([none[0], along.of, none[2]]),
+        along_of_node=np.concatenate([none[0], second.of, none[2]]),
         quads=np.array(mesh.quads, np.int64),
         wheels=wheels,
         zone_of_wheel=zones_of_wheels(file),

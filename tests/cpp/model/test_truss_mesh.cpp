@@ -164,13 +164,15 @@ TEST("treads of wheels that are not there are refused") {
     CHECK_THROWS(TrussMesh{wrong}, std::invalid_argument);
 }
 
-TEST("second trusses stand in blocks of their own behind the skin, on the panels of their nodes") {
+TEST("second trusses stand in blocks of their own behind the skin; those across are of a side") {
     TrussInput with = input;
     const int n = columns * rows;
+    const auto is_across = [](int i) { return i < 35; };
     for (int i = 0; i < 70; ++i) {
         const auto of = static_cast<std::size_t>(i);
         with.node.push_back(input.node[of]);
-        with.anchor.push_back(input.node[of] + Vec3(0.0, 3.0, 0.0));
+        with.anchor.push_back(input.node[of] +
+                              (is_across(i) ? Vec3(0.0, 2.0, 0.0) : Vec3(-3.0, 0.0, 0.0)));
         with.curve_of.push_back(0);
         with.scale.push_back(input.scale[of]);
     }
@@ -182,11 +184,20 @@ TEST("second trusses stand in blocks of their own behind the skin, on the panels
     CHECK(mesh.skin_blocks == 3 && mesh.shell_blocks == 5 && mesh.blocks == 5);
     CHECK(mesh.tire_nodes.empty());
     for (std::size_t b = 0; b < mesh.blocks; ++b) {
-        const bool skin = b < mesh.skin_blocks;  // second trusses belong to no panel
-        CHECK(mesh.panels_of[b] == (skin ? bare.panels_of[0] : 1U << panels));
-        for (std::size_t i = 0; i < block_size; ++i)
-            CHECK(mesh.block[b].panel[i] == (skin ? bare.block[0].panel[0] : double(panels)));
+        unsigned bits = 0;
+        for (std::size_t i = 0; i < mesh.nodes_in(b); ++i) {
+            const int of = with.along_of[mesh.input_index[mesh.first[b] + i]];
+            const std::size_t panel = of < 0          ? static_cast<std::size_t>(bare.block[0].panel[0])
+                                      : is_across(of) ? 2  // its inward direction is +s
+                                                      : panels;
+            CHECK(mesh.block[b].panel[i] == double(panel));
+            bits |= 1U << panel;
+        }
+        CHECK(mesh.panels_of[b] == bits);
     }
+    // A post is beyond the side once it has passed the far ends of the trusses across.
+    CHECK(mesh.panel[2].any && !bare.panel[2].any);
+    CHECK_CLOSE(mesh.panel[2].anchors.center.y() - mesh.panel[2].box.center.y(), 2.0, 1e-12, "rounding");
     CHECK(mesh.anchors.half == bare.anchors.half && mesh.anchors.center == bare.anchors.center);
     CHECK(mesh.reach == bare.reach);
     for (const int wrong : {-2, n, 1000}) {

@@ -5,10 +5,11 @@
 // a whole block touches nothing, and kernels run over whole blocks without gathers. Groups of blocks are tested
 // first. The last block is padded with trusses of no stiffness.
 //
-// A panel may also resist in its own plane. Each of its nodes then has a second truss along the vehicle, with a node
-// of its own at the same place. That node meets the same surfaces as the first one, but belongs to no panel: posts
-// push on it, but their indentations do not move it. The anchor of a second truss is no part of the rigid body. The
-// blocks of second trusses follow those of the skin.
+// A panel may also resist along the vehicle, or across it where its trusses slant. Its nodes then have second trusses,
+// each with a node of its own at the same place. That node meets the same surfaces as the first one. One whose truss
+// goes along belongs to no panel: posts push on it, but their indentations do not move it. One whose truss goes across
+// belongs to that side. The anchor of a second truss is no part of the rigid body. The blocks of second trusses follow
+// those of the skin.
 //
 // Tyres that meet a barrier have nodes too, on the tread's outer edge. The nodes of each wheel have padded blocks of
 // their own, after all others. Their anchors meet nothing, as they are no part of the rigid body. The wheels

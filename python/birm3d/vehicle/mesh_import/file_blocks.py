@@ -71,7 +71,7 @@ def with_zones(recipe: VehicleRecipe, zones: Blocks) -> VehicleRecipe:
     made = {name: _block(Zone, "zones", name, given, known.get(name)) for name, given in zones.items()}
     new = {name: zone for name, zone in made.items() if name not in known}
     file = file.changed({"zones": tuple({**new, **known, **made}.values())})
-    named = {key for name, zone in made.items() for key in (name, zone.along_name)}
+    named = {key for name, zone in made.items() for key in (name, *zone.second_laws)}
     laws = {name: law if name in named else recipe.zones.get(name, law) for name, law in file.laws.items()}
     return dataclasses.replace(recipe, file=file, zones=laws)
 
