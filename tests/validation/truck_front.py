@@ -119,7 +119,7 @@ NUMBERS = (
     Number(
         _TAIL,
         "Pa/m",
-        tuple(f"zone.{zone}.tail_slope" for zone in ("rails", "bumper_end", "engine", "hood")),
+        tuple(f"zone.{zone}.tail_slope" for zone in ("rails", "bumper_end", "hood")),
         (0.5e6, 5e6),
         0.1e6,
         20e6,
@@ -128,11 +128,11 @@ NUMBERS = (
     Number(
         _MIDDLE_TAIL,
         "Pa/m",
-        ("zone.bumper_middle.tail_slope",),
+        ("zone.bumper_middle.tail_slope", "zone.engine.tail_slope"),
         (2e6, 15e6),
         0.3e6,
         80e6,
-        "bumper and radiator jam on the engine between the rails: megapascals within 0.2 to 0.5 m",
+        "bumper, radiator and cab jam on the engine between the rails: megapascals within 0.2 to 0.5 m",
     ),
     Number(
         _MIDDLE_DEPTH,

@@ -11,9 +11,9 @@ from truck_runs import STANDOFF, Run, figures, scene, whole_position, with_loade
 Floats = npt.NDArray[np.float64]
 
 # One body with few numbers can not come as close as repeats of a run do, 4 and 5 %. So travel and force have
-# half of their marks (shares), pitch its mark (deg). Loads on a post in N s: sideways they come from a frame
+# half of their marks (shares), the overturning moment and pitch their marks (share, deg). Loads on a post in N s: sideways they come from a frame
 # that bends between two posts.
-TRAVEL, FORCE, PITCH, SIDEWAYS, FORWARD = 0.06, 0.075, 5.0, 20e3, 15e3
+TRAVEL, FORCE, MOMENT, PITCH, SIDEWAYS, FORWARD = 0.06, 0.075, 0.15, 5.0, 20e3, 15e3
 # Curves count as so many points. The force has spikes of an engine that one rigid body can not follow (share
 # of the peak). The displacement (share of the travel) tells when a force acts.
 FORCE_CURVE, FORCE_POINTS = 0.2, 8.0
@@ -32,6 +32,8 @@ def residuals(vehicle: birm3d.Vehicle, run: Run) -> Floats:
         (own.force_50ms / run.force_50ms - 1.0) / FORCE,
         (own.pitch - run.pitch) / PITCH,
     ]
+    if run.moment is not None:
+        scalars.append((own.moment / run.moment - 1.0) / MOMENT)
     posts = (own.impulse - run.impulse) / [FORWARD, SIDEWAYS] if run.posts else np.empty((0, 2))
     time = result.time - STANDOFF / result.velocity[0, 0]
     filtered = cfc(result.barrier_normal_force, 60, result.scene.settings.output_interval)

@@ -394,6 +394,7 @@ class _VehicleDocument(ZonesInOrder):
         if not isinstance(without, list):
             raise self.fault(("without",), f"without: must be a list of zones, got {received(without)}")
         base.data["zone"] = self._zones_left(("without",), without, base.data["zone"])
+        base.data["scatter"] = _scatter_of(base.data)
 
     def _zones_left(
         self, at: KeyPath, without: Sequence[Any], zones: dict[str, Any], others: Iterable[str] = ()
@@ -420,6 +421,7 @@ class _VehicleDocument(ZonesInOrder):
         names = {block["name"] for key in _NAMED for block in data.get(key, ())}
         zones = {zone.pop("name"): zone for zone in data["zone"]}
         data["zone"] = self._zones_left(("scaled", "without"), scaled.without, zones, names)
+        data["scatter"] = _scatter_of(data)
         for key in _NAMED:
             data[key] = [block for block in data.get(key, ()) if block["name"] not in scaled.without]
             if isinstance(self.data.get(key), list):
@@ -444,6 +446,16 @@ class _VehicleDocument(ZonesInOrder):
                 if at[1] == i:
                     self._places[(key, place, *at[2:])] = where
         self.data[key] = merged
+
+
+def _scatter_of(data: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the scatter of a class without the zones that were left out, and without blocks of those alone."""
+    found = []
+    for block in data.get("scatter", ()):
+        zones = [name for name in block.get("zones", ()) if name.partition(".")[0] in data["zone"]]
+        if zones or not block.get("zones"):
+            found.append({**block, **({"zones": zones} if zones else {})})
+    return found
 
 
 def read_vehicle_file(path: str | Path) -> VehicleFile:
