@@ -15,7 +15,9 @@ Box box_around(const std::vector<Vec3>& points) {
 
 // Second trusses across the vehicle go in with a post before the side, as the side's own do. Those along it do not:
 // the post slides past what resists lengthways.
-bool is_across(const Vec3& direction) { return std::abs(direction.y()) > std::abs(direction.x()); }
+bool is_across(const Vec3& direction) {
+    return std::abs(direction.y()) > std::abs(direction.x());
+}
 
 // Panel of a truss with the direction `inward`: two for each axis, the positive direction first.
 std::size_t panel_of(const Vec3& inward) {

@@ -92,4 +92,4 @@ def _is_straight(mesh: ExteriorMesh) -> npt.NDArray[np.bool_]:
     for k in range(4):
         np.add.at(normal, mesh.quads[:, k], np.cross(*diagonals))
     x, y, z = np.abs(normal).T
-    return (x <= _CORNER_SLOPE * y) & (z < y)
+    return np.asarray((x <= _CORNER_SLOPE * y) & (z < y))

@@ -449,7 +449,7 @@ class _VehicleDocument(ZonesInOrder):
 
 
 def _scatter_of(data: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the scatter of a class without the zones that were left out, and without blocks of those alone."""
+    """Return the scatter of a class without zones that were left out, nor blocks of such zones alone."""
     found = []
     for block in data.get("scatter", ()):
         zones = [name for name in block.get("zones", ()) if name.partition(".")[0] in data["zone"]]

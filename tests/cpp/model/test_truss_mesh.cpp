@@ -171,8 +171,7 @@ TEST("second trusses stand in blocks of their own behind the skin; those across 
     for (int i = 0; i < 70; ++i) {
         const auto of = static_cast<std::size_t>(i);
         with.node.push_back(input.node[of]);
-        with.anchor.push_back(input.node[of] +
-                              (is_across(i) ? Vec3(0.0, 2.0, 0.0) : Vec3(-3.0, 0.0, 0.0)));
+        with.anchor.push_back(input.node[of] + (is_across(i) ? Vec3(0.0, 2.0, 0.0) : Vec3(-3.0, 0.0, 0.0)));
         with.curve_of.push_back(0);
         with.scale.push_back(input.scale[of]);
     }
