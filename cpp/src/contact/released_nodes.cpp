@@ -178,9 +178,19 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     find_stopping_face(pass, block, (to - held).normalized(), node);
 }
 
+// Does the path lead into a surface that its start is at or inside? Skin that follows a post slides on the ground.
+bool leads_into_surface(const ContactPass& pass, const Path& path) {
+    for (std::size_t k = 0; k < pass.near.size(); ++k) {
+        if (!is_solid_to(pass, path.block, path.node_index, k)) continue;
+        const double gap = gap_at(pass, k, path.start);
+        if (gap <= tolerance::touching_gap && gap_at(pass, k, path.end) < gap) return true;
+    }
+    return false;
+}
+
 // The truss of a node that an indentation releases extends to its free length. A post or a wall's upright edge releases it
-// outside all surfaces, and the first one on its way stops it. Skin that hung over a top may be inside the wall: no surface
-// stops that.
+// outside all surfaces but the one that it stands on, and the first one on its way stops it. Skin that hung over a top may
+// be inside the wall: no surface stops that.
 StoppedNode left_node(const ContactPass& pass, std::size_t i, double work, const ContactBlock& block,
                       DistantObstacles& distant) {
     const TrussBlock& truss = pass.mesh.block[block.index];
@@ -190,7 +200,7 @@ StoppedNode left_node(const ContactPass& pass, std::size_t i, double work, const
         i,   path.end, last.residual[i], last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i],
         work};
     const auto stop = last.may_lag(i) ? std::nullopt : find_first_stop(pass, path, distant);
-    if (!stop || *stop == path.start) return node;
+    if (!stop || (*stop == path.start && !leads_into_surface(pass, path))) return node;
     node.place = *stop;
     node.deflection = truss.length[i] - (*stop - anchor_of(truss, i)).norm();
     node.force = unloading_force(truss, last, i, node.deflection);
