@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from birm3d import Barrier, CoreContactWarning, Result, Settings, Simulation, Vehicle
+from birm3d import Barrier, CoreContactWarning, OverlapWarning, Result, Settings, Simulation, Vehicle
 
 FITTED = Path(__file__).parents[1] / "data/finite_element"
 
@@ -105,7 +105,17 @@ def test_what_stands_on_the_ground_is_not_let_go_by_a_pole(density: float) -> No
         )
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", CoreContactWarning)  # the pole meets the frame
+            warnings.simplefilter("ignore", OverlapWarning)  # and enters it between nodes of the coarse mesh
             assert scene.run().metrics["energy_residual"] < limit
+
+
+def test_skin_that_a_post_releases_stays_on_the_ground() -> None:
+    """Once the ground pressed it back from below: up to 1.2e-3 of the energy, in a third of such runs."""
+    pickup, posts = car("pickup"), Barrier.bollards(count=9, diameter=0.05, height=0.4, spacing=0.3)
+    for tolerance in np.geomspace(3e-5, 1e-5, 8):
+        settings = Settings(tolerance=float(tolerance))
+        crash = Simulation(pickup, posts, 20.0, impact_roll=90.0, duration=0.12, settings=settings)
+        assert crash.run().metrics["energy_residual"] < 3e-5
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.4])
