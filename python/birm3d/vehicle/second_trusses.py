@@ -85,11 +85,9 @@ def _slants(mesh: ExteriorMesh) -> npt.NDArray[np.bool_]:
 
 
 def _is_straight(mesh: ExteriorMesh) -> npt.NDArray[np.bool_]:
-    """Return which nodes are on a side's straight part, by the elements' mean normal, shape (n,)."""
+    """Return which nodes are of an element on a side's straight part, shape (n,)."""
     corner = mesh.nodes[mesh.quads]
-    diagonals = corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1]
-    normal = np.zeros_like(mesh.nodes)
-    for k in range(4):
-        np.add.at(normal, mesh.quads[:, k], np.cross(*diagonals))
-    x, y, z = np.abs(normal).T
-    return np.asarray((x <= _CORNER_SLOPE * y) & (z < y))
+    x, y, z = np.abs(np.cross(corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1])).T
+    straight = np.zeros(len(mesh.nodes), bool)
+    straight[mesh.quads[(x <= _CORNER_SLOPE * y) & (z < y)]] = True
+    return straight
