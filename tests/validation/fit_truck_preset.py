@@ -6,8 +6,9 @@ No force of a real medium truck on a barrier was found. The runs are of a generi
 (truck_runs.py): walls and bollards. Fitted are the constant stress at which rails and engine crush, that of
 the bumper's ends, and that of the sheet beside them. Travel and force over 50 ms of all five runs count
 equally, and so does the pitch that film shows of a real truck at a wall. Each run is then left out in turn.
-The preset's file stays as it is: what is found says how far its numbers can be trusted. What it resists where
-the engine jams (zones bumper_middle and grille_middle, beyond 1.3 m) goes with the stress of rails and engine.
+The preset's file stays as it is: what is found says how far its numbers can be trusted. What it resists
+where the engine jams (zones bumper_middle and grille_middle, beyond 1.3 m) goes with the stress of rails and
+engine.
 
 --save writes tests/data/finite_element/truck_preset_fits.csv. `fit_truck.py --page --save` makes the page.
 """

@@ -22,8 +22,8 @@ pitch and roll 5 degrees. They are targets: repeats of a run differ by 5 % in tr
 Pitch and roll are the greatest until the run ends, 0.12 to 0.25 s after the touch. The moment is the greatest
 50-ms mean about the foot of the wall, or of the post that has most. The truck's fit looks at moments, that of
 the preset does not; neither looks at rolls. The preset's moments are called predicted. But a moment is force
-times height, and the preset's forces are fitted. Where its engine jams was set by hand, with the force at the row
-of three in view.
+times height, and the preset's forces are fitted. Where its engine jams was set by hand, with the force at the
+row of three in view.
 
 What the model can not do here: the engine stops in a post while the frame goes on. The bed, which here is
 fixed, slides at the wall at 50 mph and brings a third of the momentum later. A bumper's end is bent away by
