@@ -12,8 +12,8 @@ Floats = npt.NDArray[np.float64]
 
 # One body with few numbers can not come as close as repeats of a run do, 4 and 5 %. So travel and force have
 # half of their marks (shares), pitch its mark (deg). The overturning moment has twice its mark (share): the
-# height of its force is that of parts which one body does not have. Loads on a post in N s: sideways they come
-# from a frame that bends between two posts.
+# height of its force is that of parts which one body does not have. Loads on a post in N s: sideways they
+# come from a frame that bends between two posts.
 TRAVEL, FORCE, MOMENT, PITCH, SIDEWAYS, FORWARD = 0.06, 0.075, 0.3, 5.0, 20e3, 15e3
 # Curves count as so many points. The force has spikes of an engine that one rigid body can not follow (share
 # of the peak). The displacement (share of the travel) tells when a force acts.
