@@ -155,8 +155,8 @@ ELEMENTS = {
     # Lines of nodes where the engine ends.
     **{"passenger_car": 6332, "van_3500": 5772},
     # A bollard meets three columns of nodes. Trucks have a line of nodes where the front's middle ends.
-    "cargo_truck": 5752,
-    **{"cabover_7500": 7694, "bus_13t": 11652, "heavy_truck_29500": 7330},
+    "cargo_truck": 6112,
+    **{"cabover_7500": 7694, "bus_13t": 11652, "heavy_truck_29500": 7770},
 }
 
 

@@ -15,7 +15,7 @@ def test_a_pole_that_passes_between_nodes_is_warned_of() -> None:
     with pytest.warns(CoarseSkinWarning, match="width of the pole"):
         simulation = Simulation(
             coarse,
-            Barrier.pole(diameter=0.3),
+            Barrier.pole(diameter=0.24),
             15.0,
             43.5,
             -0.3,
@@ -25,7 +25,7 @@ def test_a_pole_that_passes_between_nodes_is_warned_of() -> None:
         )
     with pytest.warns(OverlapWarning, match=re.escape("inside 'pole'; a finer mesh")):
         result = simulation.run()
-    assert result.metrics["contact_overlap"] > 0.25  # through the middle of the load, 0.35 m half wide
+    assert result.metrics["contact_overlap"] > 0.2  # through the middle of the load, 0.35 m half wide
     assert result.statistics.deepest_point < 1e-3  # no anchor met it
     assert 0.0 < result.statistics.greatest_overlap_time < result.time[-1]
 

@@ -117,9 +117,9 @@ def test_a_vehicle_that_passed_and_rolled_over_is_not_called_upright() -> None:
 
 @pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning", "ignore::birm3d.LowBarrierWarning")
 def test_a_truck_on_its_side_is_not_upright() -> None:
-    """It slides on along the wall at 88 degrees, less than the 90 of "rolled over"."""
-    wall, truck = Barrier.rigid_wall(height=0.88), held_straight(Vehicle.preset("heavy_truck_29500"))
-    result = Simulation(truck, wall, 18.06, 20.8).run()
+    """It slides on along the wall at 83 degrees, less than the 90 of "rolled over"."""
+    wall, truck = Barrier.rigid_wall(height=0.92), held_straight(Vehicle.preset("heavy_truck_29500"))
+    result = Simulation(truck, wall, 19.2, 20.4).run()
     greatest, last = float(np.abs(result.roll).max()), abs(float(result.roll[-1]))
     assert result.outcome == "redirected"
     assert 75.0 < greatest < 90.0
@@ -179,7 +179,7 @@ def test_intrusion_does_not_count_what_is_beyond_the_end() -> None:
     truck, intrusions = quick_to_steer(Vehicle.preset("mash_10000s", mesh_density=0.2)), []
     for length in (40.0, 45.0):
         barrier = Barrier.jersey(height=0.81, length=length, heading=20.0, origin=(1.0, 2.0, 0.0))
-        result = Simulation(truck, barrier, units.km_h(92.0), 15.0, barrier.station()).run()
+        result = Simulation(truck, barrier, units.km_h(98.0), 15.0, barrier.station()).run()
         assert result.outcome == "rolled_over"
         intrusions.append(birm3d.rate(result, "MASH 4-12").penetration)
     into = np.array([np.cos(np.radians(20.0)), np.sin(np.radians(20.0))])

@@ -188,8 +188,8 @@ bool leads_into_surface(const ContactPass& pass, const Path& path) {
     return false;
 }
 
-// The truss of a node that an indentation releases extends to its free length. A post or a wall's upright edge releases it
-// outside all surfaces but the one that it stands on, and the first one on its way stops it. Skin that hung over a top may
+// The truss of a node that an indentation releases extends to its free length. The first surface on its way stops it. A post
+// or a wall's upright edge releases it outside all surfaces but the one that it stands on. Skin that hung over a top may
 // be inside the wall: no surface stops that.
 StoppedNode left_node(const ContactPass& pass, std::size_t i, double work, const ContactBlock& block,
                       DistantObstacles& distant) {

@@ -64,7 +64,7 @@ _UNDECIDED = "The outcome was not decided when a run ended: later loads on {elem
 _LOW = (
     "The vehicle is heavy, and its force is computed lower than design tables have it: at a wall of 1.07 m "
     "(TL-5) it acts at 0.59 m, and AASHTO applies its design force at 1.07 m. In four finite-element runs of "
-    "another truck the moment was 1.2 to 1.4 times that of the preset cargo truck. The design values do not "
+    "another truck the moment was 1.2 to 1.5 times that of the preset cargo truck. The design values do not "
     "cover this. Where the moment by your standard is greater, use that."
 )
 
