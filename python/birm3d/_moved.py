@@ -31,6 +31,7 @@ _SHORT = {
 """Short path -> where the module is, both below ``birm3d``."""
 
 _OLD = {
+    "along_panel": "vehicle.second_trusses",
     "arguments": "base.arguments",
     "articulated": "vehicle.vehicle",
     "barrier.base": "barrier.barrier",

@@ -57,6 +57,29 @@ def test_all_changes_of_the_whole_go_to_the_part_that_they_concern(truck: Vehicl
     assert "load_bed_leading_edge" not in chassis.points
 
 
+def test_laws_along_and_across_stay_with_the_chassis(tmp_path: Path) -> None:
+    """The bed's underside has the law of its zone alone: a second one was looked for by a name it has not."""
+    side = """
+extends = "cargo_truck"
+[zone.underside]
+panels = ["bottom", "side"]
+z_m = [0.0, 0.6]
+envelope_m_Pa = [[0.0, 0.0], [0.1, 0.1e6]]
+k_unloading_Pa_per_m = 1e7
+source = ["order-of-magnitude"]
+status = "estimated"
+[zone.underside.across]
+envelope_m_Pa = [[0.0, 0.0], [0.1, 0.1e6]]
+k_unloading_Pa_per_m = 1e7
+source = ["order-of-magnitude"]
+status = "estimated"
+"""
+    (tmp_path / "truck.toml").write_text(side)
+    chassis, bed = Vehicle.from_file(tmp_path / "truck.toml", mesh_density=0.2).with_sliding_bed().units
+    assert not any(name.endswith(".across") for name in bed.zones)
+    assert "underside" in chassis.zones
+
+
 def test_a_welded_bed_is_the_truck_of_one_body(truck: Vehicle) -> None:
     # Both are computed to the tolerance of 1e-3, with other steps.
     one, two = at_a_wall(truck), at_a_wall(truck.with_sliding_bed().with_joint("welded"))

@@ -491,6 +491,17 @@ def test_a_file_may_leave_zones_out(tmp_path):
         assert said in message_of(tmp_path / "bad.toml")
 
 
+def test_zones_that_are_left_out_leave_the_scatter_of_the_class(tmp_path):
+    text = 'extends = "passenger_car"\nwithout = ["zone.engine", "zone.tire"]\n'
+    (tmp_path / "even.toml").write_text(text)
+    zones = {one.name: one.zones for one in read_vehicle_file(tmp_path / "even.toml").scatter}
+    whole = {one.name: one.zones for one in read_vehicle_file(preset_path("passenger_car")).scatter}
+    assert zones["front"] == ("bumper", "engine_bay")
+    assert whole["tires"] == ("tire",)
+    assert set(whole) - set(zones) == {"tires", "springs"}  # of tires alone
+    assert zones["mass_center_height"] == ()
+
+
 def test_errors_are_reported_in_the_file_they_are_in(tmp_path):
     base, top = tmp_path / "base.toml", tmp_path / "top.toml"
     base.write_text(CAR.replace("bow_m = 0.12", "bow_m = -1"))

@@ -21,9 +21,9 @@ Marks: travel 12 %, force over 50 ms 15 %, overturning moment 15 %, impulse side
 pitch and roll 5 degrees. They are targets: repeats of a run differ by 5 % in travel and in force over 50 ms.
 Pitch and roll are the greatest until the run ends, 0.12 to 0.25 s after the touch. The moment is the greatest
 50-ms mean about the foot of the wall, or of the post that has most. The truck's fit looks at moments, that of
-the preset does not; neither looks at rolls. The preset's moments are called predicted. But a moment is force
-times height, and the preset's forces are fitted. Where its engine jams was set by hand, with the force at the
-row of three in view.
+the preset does not; neither looks at rolls. Where the preset's engine jams was set by hand, with
+forces and moments at the bollards in view: these moments are called fitted. Those at walls are called
+predicted. But a moment is force times height, and the preset's forces are fitted.
 
 What the model can not do here: the engine stops in a post while the frame goes on. The bed, which here is
 fixed, slides at the wall at 50 mph and brings a third of the momentum later. A bumper's end is bent away by
@@ -51,7 +51,7 @@ def rows(task: str) -> list[Row]:
     return [
         Row(name, who, "travel", "m", run.travel, *travel, own.travel, "fitted"),
         Row(name, who, "force over 50 ms", "N", run.force_50ms, *force, own.force_50ms, "fitted"),
-        *_moment(run, who, own.moment, role),
+        *_moment(run, who, own.moment, "fitted" if run.posts else role),
         Row(name, who, "pitch", "deg", run.pitch, *pitch, own.pitch, role),
         *_roll(run, who, own.roll, role),
         *_sideways(run, who, own.impulse, role),

@@ -33,8 +33,8 @@ says so.
 
 The scenes of MASH 4-11, of the two tractor-trailers and of the broadside pickup are those of the
 [page of all tests](README.md). Greatest roll is that of both units here, and that of the tractor there. MASH
-4-12 is 2214NJ-2 there, at a barrier 3 mm lower: there the truck overturns, here it stands up again. One row
-there has containment and standing upright together.
+4-12 is 2214NJ-2 there. The computed truck is at its tipping point: small changes of the scene decide whether
+it overturns. One row there has containment and standing upright together.
 TB11 and TB51 are SWOV TB11 and SWOV TB51 there, with the preset of the class, loaded to the mass of the test.
 Here TB11 is a sedan's shape at 900 kg, and the bus of TB51 is scaled. The notes have what is computed there.
 """

@@ -30,6 +30,7 @@ class Number:
     lower: float
     upper: float
     why: str
+    less: Mapping[str, float] = field(default_factory=dict)  # by which some of the numbers are smaller
 
     @property
     def start(self) -> float:
@@ -137,12 +138,13 @@ NUMBERS = (
     Number(
         _MIDDLE_DEPTH,
         "m",
-        ("zone.bumper_middle.tail_depth",),
+        ("zone.bumper_middle.tail_depth", "zone.engine.tail_depth"),
         (0.95, 1.95),
         0.6,
         2.2,
         "beside the engine, a block of 1.0 m, 0.95 m are left before the second cross member and 1.95 m "
         "before the bed",
+        {"zone.engine.tail_depth": 0.3},  # it begins so far behind the bumper
     ),
     Number(
         "rate sensitivity",
@@ -197,6 +199,8 @@ VARIANTS = (
 
 def vehicle_with(values: Mapping[str, float], base: birm3d.Vehicle) -> birm3d.Vehicle:
     """The vehicle with the numbers' values, by their names."""
-    given = {name: values[number.name] for number in NUMBERS for name in number.names}
+    given = {
+        name: values[number.name] - number.less.get(name, 0.0) for number in NUMBERS for name in number.names
+    }
     any_scene = scene(base, next(iter(runs().values())))
     return varied(any_scene, given).scene.vehicle

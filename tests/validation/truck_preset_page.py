@@ -14,8 +14,8 @@ the same share of the length, and sheet of an order of magnitude. The preset's f
 everywhere.
 
 The preset's front wheels hold, so that it pitches later than the runs. When it runs on, it comes to 28 and
-30 deg at the bollards after 0.75 s. Wheels that give way, as the front ones of the other truck do, bring the
-preset's pitch at the bollards to 11 and 21 deg when the runs end. At the wall at 50 mph it is then 24 deg."""
+30 deg at the bollards after 0.75 s. The front wheels of the other truck give way. With such wheels the
+preset's pitch at the bollards is 11 and 21 deg when the runs end, and 24 deg at the wall at 50 mph."""
 
 LEFT_OUT = """Each run left out in turn: the same fit to the four others and to the film. It starts from the
 file's stresses, which have seen all five runs, and from a first estimate of 0.42 MPa for the ends."""

@@ -178,12 +178,13 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     find_stopping_face(pass, block, (to - held).normalized(), node);
 }
 
-// Does the path lead into a surface that its start is at or inside? Skin that follows a post slides on the ground.
+// Does the path lead into a surface that its start is at? Skin that follows a post slides on the ground.
 bool leads_into_surface(const ContactPass& pass, const Path& path) {
     for (std::size_t k = 0; k < pass.near.size(); ++k) {
         if (!is_solid_to(pass, path.block, path.node_index, k)) continue;
         const double gap = gap_at(pass, k, path.start);
-        if (gap <= tolerance::touching_gap && gap_at(pass, k, path.end) < gap) return true;
+        if (gap <= tolerance::touching_gap && gap_at(pass, k, path.end) < gap - tolerance::touching_gap)
+            return true;
     }
     return false;
 }

@@ -142,7 +142,7 @@ def relative_to_start(scene: Scene, energy: float, start: float) -> float:
 def greatest_deflection(result: RunRecord, name: str) -> float:
     """Greatest deflection of the skin of all units [m].
 
-    Second trusses along the vehicle and the treads of tyres are left out: a segment's end or a kerb may drag
+    Second trusses and the treads of tyres are left out: a segment's end or a kerb may drag
     a few of their nodes by metres.
     """
     units = enumerate(result.scene.vehicle.units)

@@ -636,13 +636,19 @@ class Zone(Block, ZoneLaw):
             message = f"must be at least the stress at the knee, {at_knee:g}, got {self.f_max_Pa:g}"
             reject("f_max_Pa", message)
 
-    def scaled(self, factor: float, stretch: float = 1.0, along: Factors | None = None) -> Zone:
-        """Return the zone with stresses and deflections times two factors; `along` the vehicle others."""
+    def scaled(
+        self,
+        factor: float,
+        stretch: float = 1.0,
+        along: Factors | None = None,
+        across: Factors | None = None,
+    ) -> Zone:
+        """Return the zone with stresses and deflections times two factors; its second laws by their own."""
         changes = ZoneLaw.numbers_of(self.law.scaled(factor, stretch))
-        mine = (factor, stretch)
-        for key, factors in (("along", mine if along is None else along), ("across", mine)):
+        for key, given in (("along", along), ("across", across)):
             second: SecondLaw | None = getattr(self, key)
             if second is not None:
+                factors = (factor, stretch) if given is None else given
                 changes[key] = second.changed(ZoneLaw.numbers_of(second.law.scaled(*factors)))
         return self.changed(changes)
 

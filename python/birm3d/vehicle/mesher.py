@@ -88,15 +88,21 @@ def build_mesh(vehicle_file: VehicleFile, density: float = 1.0) -> ExteriorMesh:
         surface = exterior.mesh.surface(exterior.blocks, density)
     quad_zone = _zones_of_quads(vehicle_file, surface)
     nodes, quads, zone = _split_at_zone_borders(surface.points, surface.quads, quad_zone)
-    area = np.zeros(len(nodes))
-    triangle = quads[:, 2:3] == quads[:, 3:]  # its last corner is there twice
-    shares = np.where(triangle, np.array([2.0, 2.0, 1.0, 1.0]) / 6.0, 0.25)
-    np.add.at(area, quads, quad_areas(nodes, quads)[:, None] * shares)
+    area = node_areas(nodes, quads)
     anchors = np.empty_like(nodes)
     for index, law in enumerate(vehicle_file.zones):
         anchors[zone == index] = _closest(nodes[zone == index], _boxes(vehicle_file, law))
     _check_core(vehicle_file, nodes, quads, anchors)
     return ExteriorMesh(nodes, anchors, quads, area, zone, vehicle_file.zone_names)
+
+
+def node_areas(nodes: Floats, quads: Ints) -> Floats:
+    """Tributary areas of the nodes: each has its share of its elements, (n,) m^2."""
+    area = np.zeros(len(nodes))
+    triangle = quads[:, 2:3] == quads[:, 3:]  # its last corner is there twice
+    shares = np.where(triangle, np.array([2.0, 2.0, 1.0, 1.0]) / 6.0, 0.25)
+    np.add.at(area, quads, quad_areas(nodes, quads)[:, None] * shares)
+    return area
 
 
 def quad_areas(nodes: Floats, quads: Ints) -> Floats:

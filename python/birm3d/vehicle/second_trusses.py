@@ -9,8 +9,9 @@ The node of a second truss stands where the first one's does. The truss is level
 rear, or to the front for nodes behind the rigid core; across it to the same place of the other side. It is
 long, so that it hardly turns while it is pressed; its anchor is no point of the rigid core.
 
-Trusses across are where the side is straight and its own trusses slant. Beside the rigid core these point
-across already. Where the side turns into the front or rear, what a post draws in goes in with that.
+Trusses across have the area of elements on the side's straight part. Where the side turns into the front,
+what a post draws in goes in with the front. They have the share of it by which the side's own truss slants
+back: none beside the rigid core, where that points across.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .mesher import ExteriorMesh
+from .mesher import ExteriorMesh, node_areas
 from .vehicle_file import VehicleFile
 
 __all__ = ["SecondTrusses", "build_second"]
@@ -30,7 +31,6 @@ Ints = npt.NDArray[np.int64]
 
 _LENGTH = 3.0  # m, of trusses along the vehicle
 _CORNER_SLOPE = 0.2  # of the outline from above against the vehicle's axis: where it is more, the side ends
-_BESIDE = 1e-6  # m along the vehicle, by which a node is still beside its anchor
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,14 +63,13 @@ def build_second(file: VehicleFile, mesh: ExteriorMesh) -> SecondTrusses:
     along[:, 0] += np.where(mesh.nodes[:, 0] > rear, -_LENGTH, _LENGTH)
     along_law = _laws_of_nodes(file, mesh, [zone.along_name for zone in file.zones])
     across_law = _laws_of_nodes(file, mesh, [zone.across_name for zone in file.zones])
-    of = (
-        np.flatnonzero(along_law >= 0),
-        np.flatnonzero((across_law >= 0) & _is_straight(mesh) & _slants(mesh)),
-    )
+    area_across = _straight_area(mesh) * _slant_back(mesh)
+    of = (np.flatnonzero(along_law >= 0), np.flatnonzero((across_law >= 0) & (area_across > 0.0)))
     nodes = np.concatenate(of)
     anchors = np.concatenate([along[of[0]], across[of[1]]])
+    area = np.concatenate([mesh.area[of[0]], area_across[of[1]]])
     law = np.concatenate([along_law[of[0]], across_law[of[1]]])
-    return SecondTrusses(mesh.nodes[nodes], anchors, mesh.area[nodes], law, nodes)
+    return SecondTrusses(mesh.nodes[nodes], anchors, area, law, nodes)
 
 
 def _laws_of_nodes(file: VehicleFile, mesh: ExteriorMesh, names: list[str]) -> Ints:
@@ -79,15 +78,18 @@ def _laws_of_nodes(file: VehicleFile, mesh: ExteriorMesh, names: list[str]) -> I
     return np.array([place.get(name, -1) for name in names], np.int64)[mesh.zone]
 
 
-def _slants(mesh: ExteriorMesh) -> npt.NDArray[np.bool_]:
-    """Return which nodes are ahead of or behind the core boxes that their trusses start from, shape (n,)."""
-    return np.abs(mesh.anchors[:, 0] - mesh.nodes[:, 0]) > _BESIDE
+def _slant_back(mesh: ExteriorMesh) -> Floats:
+    """Return sin^2 of the angle, seen from above, between the trusses and across, shape (n,).
+
+    Zero for trusses that slant to the front.
+    """
+    back, aside = (mesh.nodes - mesh.anchors)[:, :2].T
+    level = np.square(back) + np.square(aside)
+    return np.square(np.maximum(back, 0.0)) / np.where(level > 0.0, level, 1.0)
 
 
-def _is_straight(mesh: ExteriorMesh) -> npt.NDArray[np.bool_]:
-    """Return which nodes are of an element on a side's straight part, shape (n,)."""
+def _straight_area(mesh: ExteriorMesh) -> Floats:
+    """Return the nodes' share of the area of elements on the side's straight part, shape (n,) [m^2]."""
     corner = mesh.nodes[mesh.quads]
-    x, y, z = np.abs(np.cross(corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1])).T
-    straight = np.zeros(len(mesh.nodes), bool)
-    straight[mesh.quads[(x <= _CORNER_SLOPE * y) & (z < y)]] = True
-    return straight
+    x, y, z = np.abs(np.cross(corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1])).T  # normals
+    return node_areas(mesh.nodes, mesh.quads[(x <= _CORNER_SLOPE * y) & (z < y)])

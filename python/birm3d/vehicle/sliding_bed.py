@@ -150,7 +150,14 @@ def _underside(file: VehicleFile, bed: Bed, boxes: tuple[str, ...]) -> Zone:
     like = next(zone for zone in file.zones if zone.name == bed.underside)
     everywhere = {"blocks": (), "x_m": None, "y_m": None, "z_m": None}
     return like.changed(
-        {"name": UNDERSIDE, "panels": ("bottom",), "core": boxes, "along": None, **everywhere}
+        {
+            "name": UNDERSIDE,
+            "panels": ("bottom",),
+            "core": boxes,
+            "along": None,
+            "across": None,
+            **everywhere,
+        }
     )
 
 

@@ -68,7 +68,7 @@ class Vehicle(OldVehicleNames):
     wheel_of_node : ndarray of int, shape (n,)
         Index of the wheel whose tread the node is on; -1 for nodes of the shell.
     along_of_node : ndarray of int, shape (n,)
-        Number of the node whose second truss, along the vehicle or across it, this node carries; -1 for
+        Number of the node whose second truss this node carries, along the vehicle or across it; -1 for
         all others.
     zone_of_node : ndarray of int, shape (n,)
         Index into ``zones``; -1 for vehicles made from arrays.

@@ -236,7 +236,7 @@ class VehicleFile(Strict):
         factors = {}
         for zone in self.zones:
             factors[zone.name] = Factors.mean(panels[name] for name in zone.panels)
-            factors[zone.across_name] = factors[zone.name]
+            factors[zone.across_name] = panels["side"]
             factors[zone.along_name] = panels["along"]
         return {name: one._replace(stress=strength * one.stress) for name, one in factors.items()}
 
@@ -266,7 +266,8 @@ class VehicleFile(Strict):
             "points": tuple(to.point(point) for point in self.points),
             "core": tuple(to.core(box) for box in self.core),
             "zones": tuple(
-                to.zone(zone, factors[zone.name], factors[zone.along_name]) for zone in self.zones
+                to.zone(zone, factors[zone.name], factors[zone.along_name], factors[zone.across_name])
+                for zone in self.zones
             ),
             "dimensions": to.dimensions(self.dimensions),
             "exterior": to.exterior(self.exterior),

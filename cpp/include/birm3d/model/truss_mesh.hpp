@@ -63,7 +63,8 @@ struct TrussInput {
     double indentation_length = 0.0;
     // (n) Number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
     std::vector<int> wheel_of = {};
-    // (n) Number of the node of the skin whose second truss this is, -1 for others; empty: no second ones.
+    // (n) Number of the node of the skin whose second truss this is, along the vehicle or across it; -1 for others; empty: no
+    // second ones.
     std::vector<int> along_of = {};
 };
 
