@@ -79,7 +79,7 @@ def test_a_truck_beyond_a_post_is_not_stopped() -> None:
 
 def test_a_run_ends_at_rest_though_wedged_skin_stores_energy() -> None:
     """Skin on both sides of a post can press on it for ever; the truck stands still."""
-    result = Simulation(Vehicle.preset("cabover_7200"), Barrier.bollards(count=5), "50 mph").run()
+    result = Simulation(Vehicle.preset("cargo_truck"), Barrier.bollards(count=5), "50 mph").run()
     at_rest = 1e-6 * result.energy["kinetic"][0]
     assert result.end_reason == "stopped"
     assert result.outcome == "stopped"

@@ -204,7 +204,7 @@ def test_skin_that_comes_behind_a_thin_wall_is_let_go() -> None:
     pickup = Vehicle.preset("pickup", mesh_density=0.1)
     wall = Barrier.rigid_wall(width=7.6239, height=0.54554, thickness=0.35507, segments=2, friction=0.0)
     left = []
-    for tolerance in (2e-3, 2e-4):
+    for tolerance in (2e-3, 5e-4):
         crash = Simulation(
             pickup.with_gvw(1.06186 * pickup.mass),
             wall,
@@ -216,5 +216,5 @@ def test_skin_that_comes_behind_a_thin_wall_is_let_go() -> None:
         )
         crash.run()
         left.append(crash._core.balances.energy.size / crash._core.balances.at_disposal)
-    assert left[1] < 2e-4, "measured: 0.9e-4; once 1.0e-3"
-    assert left[1] < 0.4 * left[0], "measured: 0.28; once 0.60"
+    assert left[1] < 5e-4, "measured: 2.0e-4; once 1.0e-3"
+    assert left[1] < 0.4 * left[0], "measured: 0.22; once 0.60"
