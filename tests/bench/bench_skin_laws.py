@@ -16,6 +16,7 @@ results/skin_laws/skin_laws.csv.
 from __future__ import annotations
 
 import argparse
+import re
 import statistics
 import sys
 import tempfile
@@ -61,12 +62,12 @@ class Row:
 
 def with_the_papers_law(name: str, density: float) -> Vehicle:
     """Return a preset without what the paper's law does not have."""
-    kept, along = [], False
+    kept, second = [], False
     for line in unit_paths()[name].read_text(encoding="utf-8").splitlines():
         if line.startswith("["):
-            along = line.startswith("[zone.") and line.endswith(".along]")
-        if not along and line.split(" = ")[0] not in BEYOND_FIG_3:
-            kept.append(line.replace('"wheel_house.along"', "").replace(", ]", "]"))
+            second = line.startswith("[zone.") and line.endswith((".along]", ".across]"))
+        if not second and line.split(" = ")[0] not in BEYOND_FIG_3:
+            kept.append(re.sub(r', "\w+\.(along|across)"', "", line))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.toml"
         path.write_text("\n".join(kept), encoding="utf-8")

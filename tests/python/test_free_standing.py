@@ -175,8 +175,8 @@ def test_segments_come_to_rest(pinned: birm3d.Result) -> None:
 
 def test_left_and_right_mirror_each_other(car: Vehicle, chain: Barrier) -> None:
     # Until the rear swings into the barrier: rounding moves the instant of such a blow.
-    left = Simulation(car, chain, 25.0, 25.0, 1.0, duration=0.35).run()
-    right = Simulation(car, chain, 25.0, 155.0, -1.0, duration=0.35).run()
+    left = Simulation(car, chain, 25.0, 25.0, 1.0, duration=0.34).run()
+    right = Simulation(car, chain, 25.0, 155.0, -1.0, duration=0.34).run()
     flip = np.array([1.0, -1.0])
     # Friction and pins are found to 1e-9 of the friction.
     assert np.abs(right.velocity[:, :2] * flip - left.velocity[:, :2]).max() < 1e-6 * 25.0

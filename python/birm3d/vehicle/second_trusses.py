@@ -85,7 +85,7 @@ def _slant_back(mesh: ExteriorMesh) -> Floats:
     """
     back, aside = (mesh.nodes - mesh.anchors)[:, :2].T
     level = np.square(back) + np.square(aside)
-    return np.square(np.maximum(back, 0.0)) / np.where(level > 0.0, level, 1.0)
+    return np.asarray(np.square(np.maximum(back, 0.0)) / np.where(level > 0.0, level, 1.0))
 
 
 def _straight_area(mesh: ExteriorMesh) -> Floats:
