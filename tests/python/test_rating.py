@@ -186,6 +186,7 @@ def test_a_truck_between_the_posts_has_no_rating(truck: Vehicle) -> None:
     assert result.outcome == "passed"
     rating = rate(result, "ASTM F2656")
     assert rating.designation == "no rating: the vehicle goes on past the barrier"
+    assert rating.outcome == "passed"
     assert not rating.contained
     assert "at least this" in rating.summary()
 

@@ -34,9 +34,9 @@ _STATICS = (
     "has spent the yielding already."
 )
 _BEYOND_YIELD = (
-    "{element} does not yield in the run that its equivalent static force comes from. That force, of an "
-    "elastic system, is {asked:,.0f} kN, and the post resists {resists:,.0f} kN. Design its foundation for "
-    "the lesser of two: what the post resists with the upper bound of its strength, and the elastic force."
+    "Some posts do not yield in the run that their equivalent static force comes from. That force, of an "
+    "elastic system, is greater than the post resists: {posts}. Design their foundations for the lesser of "
+    "two: what the post resists with the upper bound of its strength, and the elastic force."
 )
 _LOWEST = "Of several scenes, that force comes from the one with the shortest arm."
 
@@ -68,10 +68,13 @@ def design_cautions(
         yield _STATICS
         if len(load.scenes) > 1:
             yield _LOWEST
-    for row in load.rows:
-        if row.exceeds_yield:
-            asked, resists = row.equivalent_static_force / 1e3, row.yield_force / 1e3
-            yield _BEYOND_YIELD.format(element=row.name, resists=resists, asked=asked)
+    beyond = [
+        f"{row.name} {row.equivalent_static_force / 1e3:,.0f} kN for {row.yield_force / 1e3:,.0f} kN"
+        for row in load.rows
+        if row.exceeds_yield
+    ]
+    if beyond:
+        yield _BEYOND_YIELD.format(posts="; ".join(beyond))
     if plan.period_is_assumed and not all(row.has_yielded for row in load.rows if row.touched):
         yield ASSUMED
         yield from _of_other_periods(load)

@@ -54,6 +54,8 @@ class Rating:
     doubts : tuple of Doubt
         Those of the cautions that say why this run, or its verdict, can not be relied on; a level has none of
         its own.
+    outcome : str
+        That of the run, see :attr:`birm3d.Result.outcome`; "" of a level, which has several runs.
     """
 
     standard: str
@@ -69,6 +71,7 @@ class Rating:
     is_clear: bool = True
     unmet: tuple[str, ...] = ()
     doubts: tuple[Doubt, ...] = ()
+    outcome: str = ""
 
     @property
     def designation(self) -> str:

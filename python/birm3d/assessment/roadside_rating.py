@@ -96,6 +96,7 @@ def rate_roadside(
         is_clear=is_clear,
         unmet=tuple(unmet),
         doubts=doubts,
+        outcome=result.outcome,
     )
 
 

@@ -182,6 +182,7 @@ def rate_security(
         is_final=found.final,
         unmet=tuple(row.name for row in (mass, *rows[:-1]) if row.passed is False),
         doubts=doubts,
+        outcome=result.outcome,
     )
 
 

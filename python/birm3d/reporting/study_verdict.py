@@ -77,13 +77,7 @@ def _all_of_these(study: Study, rated: RatingStudy, word: str) -> Iterator[tuple
     judged = [rating for rating in rated.ratings if not rating.unmet]
     if judged:
         met = cells_of_share(study, sum(rating.passed for rating in judged), len(judged))
-        past = [outcome_words(outcome) for outcome in PAST]
-        behind = any(
-            row.name == "outcome" and row.value in past
-            for rating in judged
-            if rating.contained
-            for row in rating.criteria
-        )
+        behind = any(rating.contained and rating.outcome in PAST for rating in judged)
         kept = "contained or at rest behind the barrier" if behind else "contained"
         yield f"all of these, and {kept}", word, "–", "–", *met
     whys = Counter(", ".join(rating.unmet) for rating in rated.ratings if rating.unmet)
