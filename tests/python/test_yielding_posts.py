@@ -440,7 +440,7 @@ def test_an_elastic_force_above_what_a_post_resists_is_not_cut_off() -> None:
         assert load.spectrum([period])[0] == row.equivalent_static_force
         asked, resists = row.equivalent_static_force / 1e3, row.yield_force / 1e3
         assert (
-            f"greater than the post resists: bollard 2 {asked:,.0f} kN for {resists:,.0f} kN" in load.caution
+            f"than the post resists: bollard 2: {asked:,.0f} kN, resistance {resists:,.0f} kN" in load.caution
         )
         assert "A post that could yield and has not counts as elastic" in load.basis
         assert f"elastic: its force is more than the {row.yield_force / 1e3:,.0f} kN" in made_by(load)

@@ -69,7 +69,7 @@ def design_cautions(
         if len(load.scenes) > 1:
             yield _LOWEST
     beyond = [
-        f"{row.name} {row.equivalent_static_force / 1e3:,.0f} kN for {row.yield_force / 1e3:,.0f} kN"
+        f"{row.name}: {row.equivalent_static_force / 1e3:,.0f} kN, resistance {row.yield_force / 1e3:,.0f} kN"
         for row in load.rows
         if row.exceeds_yield
     ]
