@@ -227,7 +227,7 @@ def test_the_energy_closes_where_posts_let_go_of_a_panel(tolerance: float, most:
 def test_posts_let_go_a_front_that_has_risen_above_them() -> None:
     """They held the skin on: 23.1 m/s were left."""
     result = truck_over_low_posts(1e-3).run()
-    assert result.final_velocity[0] == pytest.approx(25.6, abs=0.3)
+    assert result.final_velocity[0] == pytest.approx(24.9, abs=0.3)
 
 
 @pytest.mark.parametrize(("name", "share"), [("van_3500", 0.9), ("fitted_truck", 0.8)])

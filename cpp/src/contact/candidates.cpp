@@ -4,6 +4,7 @@
 
 #include "birm3d/base/tolerances.hpp"
 #include "contact/indentation.hpp"
+#include "contact/indented_panels.hpp"
 #include "contact/predicted_motion.hpp"
 #include "scene/bodies.hpp"
 

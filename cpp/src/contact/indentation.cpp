@@ -1,4 +1,4 @@
-// Posts that indent the skin: see kernels/indentation.hpp.
+// Which nodes follow an indentation, see kernels/indentation.hpp.
 #include "contact/indentation.hpp"
 
 #include <algorithm>
@@ -8,102 +8,8 @@
 #include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "contact/lagging_nodes.hpp"
-#include "kernels/integrate.hpp"
-#include "scene/indentation_gaps.hpp"
 
 namespace birm3d {
-
-namespace {
-
-// Is the post or face in front of all nodes of the panel, as they were at the start of the step? `least`: greatest gap that does
-// not count as in front (m).
-bool is_in_front(const ContactPass& pass, const Indentation& indentation, std::size_t p, double least) {
-    return gap_of_panel(indentation, p, pass.mesh, pass.before, 0.0, least) > least;
-}
-
-// Has the post, which is before the panel and deeper than its nodes now, come from in front, and not past the panel's edge?
-bool came_from_in_front(const ContactPass& pass, std::size_t p, const Indentation& then,
-                        const Indentation& now) {
-    const double beside = then.beside();
-    // A free step ends where the post lies on the nodes to rounding.
-    constexpr double least = -tolerance::touching_gap;
-    if (beside < 0.0) return is_in_front(pass, then, p, least);
-    // It passed the edge within the step. Where was it just past the edge?
-    const double share = (beside + tolerance::touching_gap) / (beside - now.beside());
-    const Indentation at_edge = between(then, now, std::min(1.0, share));
-    const double gap = gap_of_panel(at_edge, p, pass.mesh, pass.before, infinity, least);
-    // Crushed skin may have left the edge. Then the skin counts before which the post is now.
-    return gap < infinity ? gap > least : is_in_front(pass, as_deep_as(now, at_edge), p, least);
-}
-
-// What the obstacle indents in the list; nothing where that does not have it.
-IndentedPanels panels_by(const std::vector<IndentedPanels>& list, std::size_t obstacle) {
-    const auto known = std::find_if(list.begin(), list.end(), [obstacle](const IndentedPanels& indented) {
-        return indented.obstacle == obstacle;
-    });
-    return known != list.end() ? *known : IndentedPanels{obstacle};
-}
-
-// The panels that the post indents: it came into them from in front and has not released them.
-IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
-                                    std::vector<IndentedPanel>& list) {
-    const TrussMesh& mesh = pass.mesh;
-    const NearObstacle& near = pass.near[k];
-    const Obstacle& obstacle = pass.obstacle(k);
-    const IndentedPanels last = panels_by(pass.before.indented, near.index);
-    const bool pushes = pushes_on(pass.before, near.index);
-    const Twist motion = twist_in_body_axes(pass.unit.body, pass.before.body);
-    IndentedPanels now{near.index};
-    for (std::size_t p = 0; p < panels; ++p) {
-        const Panel& panel = mesh.panel[p];
-        const auto bit = static_cast<std::uint8_t>(1U << p);
-        const bool indents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
-        if (!panel.any || !can_indent(obstacle, near.now, panel, motion, indents)) continue;
-        const Indentation indentation = indentation_by(obstacle, near.now, panel, mesh, pass.scene.settings);
-        if (!indents && !(indentation.beside() < 0.0)) continue;
-        if (indentation.is_beyond(panel)) {
-            now.passed |= bit;
-            continue;
-        }
-        if (!(indents && pushes) && is_in_front(pass, indentation, p, 0.0)) continue;
-        const Indentation then = indentation_by(obstacle, near.before, panel, mesh, pass.scene.settings);
-        if (indents || (!passed && came_from_in_front(pass, p, then, indentation))) {
-            now.panels |= bit;
-            // Bound of how far the post can have moved in, and nodes can have moved off it, within the step.
-            const double growth = 2.0 * pass.margin * indentation.fastest_growth(panel);
-            list.push_back({k, p, indentation, then, growth});
-        } else {
-            now.passed |= bit;
-        }
-    }
-    return now;
-}
-
-}  // namespace
-
-void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list,
-                       std::vector<IndentedPanels>& now) {
-    list.clear();
-    now.clear();
-    pass.greatest_following = infinity;
-    if (pass.mesh.indentation_length == 0.0) return;
-    for (std::size_t k = 0; k < pass.near.size(); ++k) {
-        if (!draws_in_skin(pass.obstacle(k))) continue;
-        const IndentedPanels indented = find_indented_panels(pass, k, list);
-        if ((indented.panels | indented.passed) != 0) now.push_back(indented);
-    }
-    pass.indentations = list;
-    for (const IndentedPanels& before : pass.before.indented) {
-        pass.indented_before |= before.panels;
-        if (pass.scene.obstacles[before.obstacle].top_edge) continue;  // skin that hung over it lags already
-        const int still = panels_by(now, before.obstacle).panels;
-        pass.left_panels |= static_cast<std::uint8_t>(before.panels & ~still);
-    }
-    if (pass.indented_before == 0) return;
-    pass.greatest_following = 2.0 * pass.margin;
-    for (const IndentedPanel& indented : list)
-        pass.greatest_following = std::max(pass.greatest_following, indented.growth);
-}
 
 double gap_to_indentation(const IndentedPanel& indented, std::uint8_t panel_bits, const Box& box,
                           bool touching, bool hangs) {

@@ -1,12 +1,9 @@
-// Which panels posts and top edges indent, and which nodes follow: see kernels/indentation.hpp.
+// Which nodes follow the indentations of posts and top edges: see kernels/indentation.hpp.
 #pragma once
 
 #include "contact/contact_pass.hpp"
 
 namespace birm3d {
-
-// Sets the indentations of the pass. `list`: their memory; `now`: the part that the state keeps.
-void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list, std::vector<IndentedPanels>& now);
 
 // Lower bound of the gaps of the nodes within a box to an indentation (m); infinite where it can not reach them.
 // `panel_bits`: panels of the nodes. A block that pushes stays at its indentation until it is released.

@@ -44,9 +44,11 @@ struct StartOfStep {
 };
 
 // Adds what the k-th obstacle indented of panel `p`.
-void add_start(const ContactPass& pass, std::size_t b, std::size_t k, std::size_t p, StartOfStep& start) {
-    const Indentation then = indentation_by(pass.obstacle(k), pass.near[k].before, pass.mesh.panel[p],
-                                            pass.mesh, pass.scene.settings);
+void add_start(const ContactPass& pass, std::size_t b, std::size_t k, std::size_t p, double behind,
+               StartOfStep& start) {
+    Indentation then = indentation_by(pass.obstacle(k), pass.near[k].before, pass.mesh.panel[p], pass.mesh,
+                                      pass.scene.settings);
+    then.stay_behind(behind);
     alignas(64) BlockColumn follows;
     follow_indentation(then, then, pass.before.trusses.block[b], pass.mesh.block[b], p, start.free,
                        start.any_facing, start.nothing, start.faces, start.contact, start.rank, follows);
@@ -64,7 +66,8 @@ void find_start(const ContactPass& pass, std::size_t b, StartOfStep& start) {
     for (const IndentedPanels& indented : pass.before.indented)
         for (std::size_t k = 0; k < pass.near.size(); ++k)
             for (std::size_t p = 0; p < panels && pass.near[k].index == indented.obstacle; ++p)
-                if ((indented.panels & pass.mesh.panels_of[b]) >> p & 1) add_start(pass, b, k, p, start);
+                if ((indented.panels & pass.mesh.panels_of[b]) >> p & 1)
+                    add_start(pass, b, k, p, indented.behind[p], start);
 }
 
 }  // namespace

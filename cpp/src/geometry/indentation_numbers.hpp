@@ -39,7 +39,8 @@ struct IndentationNumbers {
     double edge_allowance;
     double tilt;             // e of the axis for each unit of l
     double radius, stretch;  // the post's, and that of its section with a plane of e and w over it
-    double surface;          // into, of the outermost node of the panel
+    double behind = 0.0;     // how far the indentation stays behind the post, along e
+    double surface;          // into, of the outermost node of the panel, with `behind` added
     double per_reach, per_stretch;
     double
         grip;  // fraction of the post's displacement that the skin follows, at the deepest point of the post in the panel

@@ -210,7 +210,7 @@ double Indentation::deepest_place(const Panel& panel) const {
 double Indentation::beside() const {
     const Range tops = linear(top, top_slope, before(*this, {low, high}));
     const double below = is_face ? tops.low - ceiling : bottom - top;
-    return std::max({low - most_w, least_w - high, bottom - tops.high, below});
+    return std::max({beside_across(), bottom - tops.high, below});
 }
 
 bool Indentation::is_beyond(const Panel& panel) const {
@@ -241,7 +241,7 @@ struct BoxInIndentation {
 };
 
 BoxInIndentation box_in_indentation(const Indentation& indentation, const Box& box, bool hangs) {
-    const double outermost = extent(indentation, box, indentation.into()).low;
+    const double outermost = extent(indentation, box, indentation.into()).low + indentation.behind;
     const Range w = extent(indentation, box, indentation.across()),
                 l = extent(indentation, box, indentation.along());
     const double deepest = indentation.stretch * indentation.radius + middle_over(indentation, box).high,

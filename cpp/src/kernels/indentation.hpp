@@ -75,6 +75,8 @@
 // nodes, or free nodes slip round it to either side.
 #pragma once
 
+#include <algorithm>
+
 #include "birm3d/geometry/post.hpp"
 #include "birm3d/geometry/top_edge.hpp"
 #include "birm3d/model/truss_mesh.hpp"
@@ -101,9 +103,15 @@ struct Indentation : IndentationNumbers {
     Vec3 along() const { return {lx, ly, lz}; }
     Vec3 foot() const { return {ox, oy, oz}; }
 
+    // Keeps the indentation behind the post by a constant distance (m).
+    void stay_behind(double distance) { behind += distance, surface += distance; }
+
     // Distance of the post beside or below the panel (m). Negative if part of the post is in front of, in or behind
     // the panel.
     double beside() const;
+
+    // The same of its distance beside the panel alone: negative also if it is below.
+    double beside_across() const { return std::max(low - most_w, least_w - high); }
 
     // Of the post over the panel, along `into` from the foot (m).
     double deepest_place(const Panel& panel) const;
@@ -125,6 +133,10 @@ Indentation between(const Indentation& one, const Indentation& other, double fra
 
 // Beside and along the panel as in `place`, and as deep in it as `other`, of the same obstacle and panel.
 Indentation as_deep_as(const Indentation& place, const Indentation& other);
+
+// Does the panel come towards the foot of an obstacle that stands still? `motion`: of the panel's body, body axes. `least`: cosine of
+// the panel's outward direction and its velocity there, which is exceeded.
+bool comes_towards(const Panel& panel, const Placement& stands, const Twist& motion, double least);
 
 // Is the post upright enough before the panel to indent it? If it is an edge, does one of its faces point at the panel?
 // `motion`: of the panel's body, body axes. `indents`: does the post do so already?

@@ -33,13 +33,12 @@ bool is_upright(const Placement& stands, const Panel& panel, bool indents) {
     return cosine < (indents ? overturned : most_tilted);
 }
 
-// Does the panel come towards the foot of an obstacle that stands still? `motion`: of the panel's body, body axes.
-bool comes_towards(const Panel& panel, const Placement& stands, const Twist& motion) {
-    const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(stands.from_own(Vec3::Zero()));
-    return -panel.inward.dot(velocity) > least_approach * velocity.norm();
-}
-
 }  // namespace
+
+bool comes_towards(const Panel& panel, const Placement& stands, const Twist& motion, double least) {
+    const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(stands.from_own(Vec3::Zero()));
+    return -panel.inward.dot(velocity) > least * velocity.norm();
+}
 
 bool can_indent(const Post& post, const Placement& stands, const Panel& panel, const Twist& motion,
                 bool indents) {
@@ -51,7 +50,7 @@ bool can_indent(const Post& post, const Placement& stands, const Panel& panel, c
         const bool looks_at_traffic = behind.x() > 0.5;
         if (indents && cosine > edge_turned_away) return true;
         if (looks_at_traffic && cosine > least_facing) return true;
-        if (cosine > least_facing_ahead && comes_towards(panel, stands, motion)) return true;
+        if (cosine > least_facing_ahead && comes_towards(panel, stands, motion, least_approach)) return true;
     }
     return false;
 }

@@ -48,7 +48,7 @@ BIRM3D_INLINE NodePlace place_of(const IndentationNumbers& indentation, const Pa
     const Packet rx = Packet::load(nodes.x + i) - indentation.ox,
                  ry = Packet::load(nodes.y + i) - indentation.oy,
                  rz = Packet::load(nodes.z + i) - indentation.oz;
-    place.e = indentation.ex * rx + indentation.ey * ry + indentation.ez * rz;
+    place.e = indentation.ex * rx + indentation.ey * ry + indentation.ez * rz + indentation.behind;
     place.w = indentation.wx * rx + indentation.wy * ry + indentation.wz * rz;
     place.l = indentation.lx * rx + indentation.ly * ry + indentation.lz * rz;
     place.post_l = lesser(place.l, indentation.top + indentation.top_slope * place.w);

@@ -1,9 +1,11 @@
 // State of a unit's contacts that the next step needs, beside its trusses.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "birm3d/base/types.hpp"
+#include "birm3d/model/truss_mesh.hpp"
 #include "birm3d/state/contact_load.hpp"
 
 namespace birm3d {
@@ -27,6 +29,7 @@ struct SkinForces {
 struct IndentedPanels {
     std::size_t obstacle = 0;
     std::uint8_t panels = 0, passed = 0;
+    std::array<double, birm3d::panels> behind{};  // how far each indentation stays behind the post (m)
 };
 
 }  // namespace birm3d

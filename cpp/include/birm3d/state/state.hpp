@@ -130,8 +130,11 @@ struct State : Progress {
             unit.trusses.add_to(hash);
             if (unit.given_way != 0) hash.add(static_cast<double>(unit.given_way));
             if (unit.steering_angle != 0.0) hash.add(unit.steering_angle);
-            for (const IndentedPanels& indented : unit.indented)
+            for (const IndentedPanels& indented : unit.indented) {
                 hash.add(Vec3(static_cast<double>(indented.obstacle), indented.panels, indented.passed));
+                for (const double behind : indented.behind)
+                    if (behind != 0.0) hash.add(behind);
+            }
         }
         for (const BodyState& element : moving_elements)
             add_body(element);
