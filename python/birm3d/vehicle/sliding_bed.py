@@ -73,7 +73,7 @@ def _unit(recipe: VehicleRecipe, file: VehicleFile, mass: float, part: str) -> V
     return VehicleRecipe(
         name=f"{recipe.name}_{part}",
         mass=mass,
-        zones={name: recipe.zones[below if name == UNDERSIDE else name] for name in file.laws},
+        zones={name: recipe.zones[below if name == UNDERSIDE else name] for name in file.law_names},
         file=file,
         mesh_density=recipe.mesh_density,
         load_density=recipe.load_density if part == "bed" else None,

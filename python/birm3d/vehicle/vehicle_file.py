@@ -135,17 +135,17 @@ class VehicleFile(Strict):
             limit = f"within {_MASS:.0%} of the solids' mass, {self.solids_mass:.2f}"
             reject("gvw_kg", f"must be {limit}, got {self.gvw_kg}")
         blocks = set(self.exterior.blocks)
-        boxes = {box.name for box in self.core}
+        boxes, laws = {box.name for box in self.core}, set(self.law_names)
         for zone in self.zones:
             check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
             check_known(f"zone.{zone.name}.core", zone.core, boxes)
         for i, one in enumerate(self.scatter):
-            check_known(f"scatter.{i}.zones", one.zones, set(self.laws))
+            check_known(f"scatter.{i}.zones", one.zones, laws)
         self._check_cores()
         self._check_overhang()
         self._check_bed()
         for name in () if self.changes is None else self.changes.zone:
-            check_known(f"changes.zone.{name}", (name,), set(self.laws))
+            check_known(f"changes.zone.{name}", (name,), laws)
         known = {source.id for source in self.sources}
         for key, block in self._blocks():
             check_known(f"{key}.source", block.source, known)
@@ -282,6 +282,11 @@ class VehicleFile(Strict):
         """Laws of the zones by their names, in order, then their second ones: ``door.along``."""
         second = {name: one.law for zone in self.zones for name, one in zone.second_laws.items()}
         return {**{zone.name: zone.law for zone in self.zones}, **second}
+
+    @property
+    def law_names(self) -> tuple[str, ...]:
+        """Names of the laws, in the order of :attr:`laws`."""
+        return (*self.zone_names, *(name for zone in self.zones for name in zone.second_laws))
 
     @property
     def zone_names(self) -> tuple[str, ...]:
