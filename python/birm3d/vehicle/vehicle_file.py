@@ -265,10 +265,7 @@ class VehicleFile(Strict):
             "wheels": tuple(to.wheel(wheel) for wheel in self.wheels),
             "points": tuple(to.point(point) for point in self.points),
             "core": tuple(to.core(box) for box in self.core),
-            "zones": tuple(
-                to.zone(zone, factors[zone.name], factors[zone.along_name], factors[zone.across_name])
-                for zone in self.zones
-            ),
+            "zones": tuple(to.zone(zone, factors) for zone in self.zones),
             "dimensions": to.dimensions(self.dimensions),
             "exterior": to.exterior(self.exterior),
             "overhang": to.overhang(self.overhang),
