@@ -12,7 +12,7 @@ silently: unknown keys, NaN and text where a number belongs are errors.
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
@@ -74,6 +74,7 @@ __all__ = [
     "Zone",
     "ZonesInOrder",
     "data_state",
+    "laws_left",
     "preset_names",
     "preset_path",
     "read_vehicle_file",
@@ -453,12 +454,17 @@ class _VehicleDocument(ZonesInOrder):
 
 def _scatter_of(data: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Return the scatter of a class without zones that were left out, nor blocks of such zones alone."""
-    found = []
-    for block in data.get("scatter", ()):
-        zones = [name for name in block.get("zones", ()) if name.partition(".")[0] in data["zone"]]
-        if zones or not block.get("zones"):
-            found.append({**block, **({"zones": zones} if zones else {})})
-    return found
+    return [
+        {**block, "zones": left}
+        for block in data.get("scatter", ())
+        if (left := laws_left(block.get("zones", ()), data["zone"])) is not None
+    ]
+
+
+def laws_left(names: Collection[str], zones: Container[str]) -> tuple[str, ...] | None:
+    """Return which laws that a block of scatter names are those of zones; ``None`` if all are of others."""
+    left = tuple(name for name in names if name.partition(".")[0] in zones)
+    return left if left or not names else None
 
 
 def read_vehicle_file(path: str | Path) -> VehicleFile:
