@@ -75,9 +75,8 @@ def test_the_sentence_says_which_unit_rolled_over() -> None:
 def test_an_undecided_run_of_the_longest_duration_asks_for_a_longer_one() -> None:
     """It asked for duration=None, which the run had."""
     car = Vehicle.preset("mash_1100c", mesh_density=0.3)
-    result = Simulation(
-        car, Barrier.rigid_wall(), 6.0, 90.0, standoff=113.74
-    ).run()  # it meets the wall at 29.97 s
+    # It meets the wall at 29.97 s.
+    result = Simulation(car, Barrier.rigid_wall(), 6.0, 90.0, standoff=113.74).run()
     assert (result.outcome, result.end_reason) == ("undecided", "longest")
     with pytest.raises(ValueError, match=r"\(a duration above 30 s\), got one that ends at 30 s"):
         rate(result, "ASTM F2656")

@@ -14,6 +14,7 @@ from birm3d.study import limit_class
 ROOT = Path(__file__).parents[2]
 PAGES = sorted((ROOT / "docs/pages/how-to").glob("*.md"))
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.S | re.M)
+FILE = re.compile(r"^```toml\n# (\w+\.toml)\n(.*?)^```$", re.S | re.M)  # a comment names it
 
 BEFORE = """
 import birm3d
@@ -113,8 +114,11 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_a_page_runs(page: Path, coarse: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    blocks = BLOCK.findall(page.read_text(encoding="utf-8"))
+    text = page.read_text(encoding="utf-8")
+    blocks = BLOCK.findall(text)
     assert blocks
+    for name, content in FILE.findall(text):
+        (tmp_path / name).write_text(content, encoding="utf-8")
     for extra in EXTRAS.get(page.stem, ()):
         pytest.importorskip(extra)
     (tmp_path / "examples").symlink_to(ROOT / "examples")

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from birm3d import units
 from birm3d.vehicle.combination_file import read_combination
+from birm3d.vehicle.scaling import Factors
 from birm3d.vehicle.vehicle_file import (
     Solid,
     VehicleFile,
@@ -429,7 +430,7 @@ def test_a_law_with_all_its_numbers_is_read_and_scaled(tmp_path):
     door = vehicle.zones[vehicle.zone_names.index("door")]
     assert door.law.curve.elastic_recovery == 0.05
     assert door.law.curve.envelope(1.0) == pytest.approx(5e4 + 0.4 * 5e5, rel=1e-12)
-    double = door.scaled(2.0).law
+    double = door.scaled({"door": Factors(2.0, 1.0)}).law
     assert double == door.law.scaled(2.0)
     assert (double.elastic_recovery, double.tail_depth, double.tail_slope) == (0.05, 0.6, 1e6)
     assert double.k_unloading == 2e6

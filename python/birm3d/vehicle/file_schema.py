@@ -7,7 +7,7 @@ SI, file axes: x forward, y left, z up, origin on the ground below the middle of
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
 from typing import Annotated, Literal, TypeAlias
@@ -636,20 +636,12 @@ class Zone(Block, ZoneLaw):
             message = f"must be at least the stress at the knee, {at_knee:g}, got {self.f_max_Pa:g}"
             reject("f_max_Pa", message)
 
-    def scaled(
-        self,
-        factor: float,
-        stretch: float = 1.0,
-        along: Factors | None = None,
-        across: Factors | None = None,
-    ) -> Zone:
-        """Return the zone with stresses and deflections times two factors; its second laws by their own."""
-        changes = ZoneLaw.numbers_of(self.law.scaled(factor, stretch))
-        for key, given in (("along", along), ("across", across)):
-            second: SecondLaw | None = getattr(self, key)
-            if second is not None:
-                factors = (factor, stretch) if given is None else given
-                changes[key] = second.changed(ZoneLaw.numbers_of(second.law.scaled(*factors)))
+    def scaled(self, factors: Mapping[str, Factors]) -> Zone:
+        """Return the zone with stresses and deflections times the factors of each law, by the laws' names."""
+        changes = ZoneLaw.numbers_of(self.law.scaled(*factors[self.name]))
+        for name, second in self.second_laws.items():
+            numbers = ZoneLaw.numbers_of(second.law.scaled(*factors[name]))
+            changes[name.removeprefix(f"{self.name}.")] = second.changed(numbers)
         return self.changed(changes)
 
     @property

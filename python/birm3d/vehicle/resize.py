@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -186,14 +186,14 @@ class Resize:
             }
         )
 
-    def zone(self, zone: Zone, mine: Factors, along: Factors, across: Factors) -> Zone:
-        """Return a zone with the part of the exterior that it holds for, and its laws by their factors."""
+    def zone(self, zone: Zone, factors: Mapping[str, Factors]) -> Zone:
+        """Return a zone with its part of the exterior; its laws have their factors, by their names."""
         changes: dict[str, Any] = {
             "x_m": None if zone.x_m is None else _both(self._to.x, zone.x_m),
             "y_m": None if zone.y_m is None else _both(self._across, zone.y_m),
             "z_m": None if zone.z_m is None else _both(self._to.z, zone.z_m),
         }
-        return zone.scaled(*mine, along=along, across=across).changed(changes)
+        return zone.scaled(factors).changed(changes)
 
 
 def _both(change: Callable[[float], float], limits: Range) -> Range:

@@ -61,10 +61,12 @@ def build_second(file: VehicleFile, mesh: ExteriorMesh) -> SecondTrusses:
     rear = min(box.x_m[0] for box in file.core)
     along, across = mesh.nodes.copy(), mesh.nodes * (1.0, -1.0, 1.0)
     along[:, 0] += np.where(mesh.nodes[:, 0] > rear, -_LENGTH, _LENGTH)
-    along_law = _laws_of_nodes(file, mesh, [zone.along_name for zone in file.zones])
-    across_law = _laws_of_nodes(file, mesh, [zone.across_name for zone in file.zones])
-    area_across = _straight_area(mesh) * _slant_back(mesh)
-    of = (np.flatnonzero(along_law >= 0), np.flatnonzero((across_law >= 0) & (area_across > 0.0)))
+    place = {name: index for index, name in enumerate(file.law_names)}
+    along_law = _laws_of_nodes(mesh, [place.get(zone.along_name, -1) for zone in file.zones])
+    across_law = _laws_of_nodes(mesh, [place.get(zone.across_name, -1) for zone in file.zones])
+    # An element's nodes are of one zone, so that elements of other zones add nothing to nodes with a law.
+    area_across = _straight_area(mesh, mesh.quads[across_law[mesh.quads[:, 0]] >= 0]) * _slant_back(mesh)
+    of = (np.flatnonzero(along_law >= 0), np.flatnonzero(area_across > 0.0))
     nodes = np.concatenate(of)
     anchors = np.concatenate([along[of[0]], across[of[1]]])
     area = np.concatenate([mesh.area[of[0]], area_across[of[1]]])
@@ -72,10 +74,9 @@ def build_second(file: VehicleFile, mesh: ExteriorMesh) -> SecondTrusses:
     return SecondTrusses(mesh.nodes[nodes], anchors, area, law, nodes)
 
 
-def _laws_of_nodes(file: VehicleFile, mesh: ExteriorMesh, names: list[str]) -> Ints:
-    """Return the index of the law that each node's zone has under its name, -1 for none, shape (n,)."""
-    place = {name: index for index, name in enumerate(file.laws)}
-    return np.array([place.get(name, -1) for name in names], np.int64)[mesh.zone]
+def _laws_of_nodes(mesh: ExteriorMesh, laws: list[int]) -> Ints:
+    """Return the index of the law that each node's zone has, -1 for none, shape (n,)."""
+    return np.array(laws, np.int64)[mesh.zone]
 
 
 def _slant_back(mesh: ExteriorMesh) -> Floats:
@@ -88,8 +89,8 @@ def _slant_back(mesh: ExteriorMesh) -> Floats:
     return np.asarray(np.square(np.maximum(back, 0.0)) / np.where(level > 0.0, level, 1.0))
 
 
-def _straight_area(mesh: ExteriorMesh) -> Floats:
-    """Return the nodes' share of the area of elements on the side's straight part, shape (n,) [m^2]."""
-    corner = mesh.nodes[mesh.quads]
+def _straight_area(mesh: ExteriorMesh, quads: Ints) -> Floats:
+    """Return the nodes' share of the area of those elements that are on the side's straight part [m^2]."""
+    corner = mesh.nodes[quads]
     x, y, z = np.abs(np.cross(corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1])).T  # normals
-    return node_areas(mesh.nodes, mesh.quads[(x <= _CORNER_SLOPE * y) & (z < y)])
+    return node_areas(mesh.nodes, quads[(x <= _CORNER_SLOPE * y) & (z < y)])

@@ -16,7 +16,7 @@ from .file_schema import Bed, End, Upper, Zone
 from .joint import Joint
 from .payload import structure_mass
 from .recipe import VehicleRecipe
-from .vehicle_file import VehicleFile
+from .vehicle_file import VehicleFile, laws_left
 
 __all__ = ["with_sliding_bed"]
 
@@ -73,7 +73,7 @@ def _unit(recipe: VehicleRecipe, file: VehicleFile, mass: float, part: str) -> V
     return VehicleRecipe(
         name=f"{recipe.name}_{part}",
         mass=mass,
-        zones={name: recipe.zones[below if name == UNDERSIDE else name] for name in file.laws},
+        zones={name: recipe.zones[below if name == UNDERSIDE else name] for name in file.law_names},
         file=file,
         mesh_density=recipe.mesh_density,
         load_density=recipe.load_density if part == "bed" else None,
@@ -175,11 +175,7 @@ def _base_height(file: VehicleFile, bed: Bed) -> float:
 
 def _part(file: VehicleFile, **changes: Any) -> VehicleFile:
     """Return the file of one part, without what it needs no more."""
-    zones = changes["zones"]
-    laws = {name for zone in zones for name in (zone.name, *zone.second_laws)}
-    scatter = [
-        one.changed({"zones": tuple(name for name in one.zones if name in laws)}) for one in file.scatter
-    ]
+    zones = {zone.name for zone in changes["zones"]}
     return file.changed(
         {
             **changes,
@@ -187,7 +183,9 @@ def _part(file: VehicleFile, **changes: Any) -> VehicleFile:
             "zones_at_kg": file.zones_mass,
             "targets": (),
             "scatter": tuple(
-                now for now, one in zip(scatter, file.scatter, strict=True) if now.zones or not one.zones
+                one.changed({"zones": left})
+                for one in file.scatter
+                if (left := laws_left(one.zones, zones)) is not None
             ),
             "bed": None,
         }

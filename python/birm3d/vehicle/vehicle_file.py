@@ -12,7 +12,7 @@ silently: unknown keys, NaN and text where a number belongs are errors.
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
@@ -74,6 +74,7 @@ __all__ = [
     "Zone",
     "ZonesInOrder",
     "data_state",
+    "laws_left",
     "preset_names",
     "preset_path",
     "read_vehicle_file",
@@ -135,17 +136,17 @@ class VehicleFile(Strict):
             limit = f"within {_MASS:.0%} of the solids' mass, {self.solids_mass:.2f}"
             reject("gvw_kg", f"must be {limit}, got {self.gvw_kg}")
         blocks = set(self.exterior.blocks)
-        boxes = {box.name for box in self.core}
+        boxes, laws = {box.name for box in self.core}, set(self.law_names)
         for zone in self.zones:
             check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
             check_known(f"zone.{zone.name}.core", zone.core, boxes)
         for i, one in enumerate(self.scatter):
-            check_known(f"scatter.{i}.zones", one.zones, set(self.laws))
+            check_known(f"scatter.{i}.zones", one.zones, laws)
         self._check_cores()
         self._check_overhang()
         self._check_bed()
         for name in () if self.changes is None else self.changes.zone:
-            check_known(f"changes.zone.{name}", (name,), set(self.laws))
+            check_known(f"changes.zone.{name}", (name,), laws)
         known = {source.id for source in self.sources}
         for key, block in self._blocks():
             check_known(f"{key}.source", block.source, known)
@@ -265,10 +266,7 @@ class VehicleFile(Strict):
             "wheels": tuple(to.wheel(wheel) for wheel in self.wheels),
             "points": tuple(to.point(point) for point in self.points),
             "core": tuple(to.core(box) for box in self.core),
-            "zones": tuple(
-                to.zone(zone, factors[zone.name], factors[zone.along_name], factors[zone.across_name])
-                for zone in self.zones
-            ),
+            "zones": tuple(to.zone(zone, factors) for zone in self.zones),
             "dimensions": to.dimensions(self.dimensions),
             "exterior": to.exterior(self.exterior),
             "overhang": to.overhang(self.overhang),
@@ -282,6 +280,11 @@ class VehicleFile(Strict):
         """Laws of the zones by their names, in order, then their second ones: ``door.along``."""
         second = {name: one.law for zone in self.zones for name, one in zone.second_laws.items()}
         return {**{zone.name: zone.law for zone in self.zones}, **second}
+
+    @property
+    def law_names(self) -> tuple[str, ...]:
+        """Names of the laws, in the order of :attr:`laws`."""
+        return (*self.zone_names, *(name for zone in self.zones for name in zone.second_laws))
 
     @property
     def zone_names(self) -> tuple[str, ...]:
@@ -451,12 +454,17 @@ class _VehicleDocument(ZonesInOrder):
 
 def _scatter_of(data: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Return the scatter of a class without zones that were left out, nor blocks of such zones alone."""
-    found = []
-    for block in data.get("scatter", ()):
-        zones = [name for name in block.get("zones", ()) if name.partition(".")[0] in data["zone"]]
-        if zones or not block.get("zones"):
-            found.append({**block, **({"zones": zones} if zones else {})})
-    return found
+    return [
+        {**block, "zones": left}
+        for block in data.get("scatter", ())
+        if (left := laws_left(block.get("zones", ()), data["zone"])) is not None
+    ]
+
+
+def laws_left(names: Collection[str], zones: Container[str]) -> tuple[str, ...] | None:
+    """Return which laws that a block of scatter names are those of zones; ``None`` if all are of others."""
+    left = tuple(name for name in names if name.partition(".")[0] in zones)
+    return left if left or not names else None
 
 
 def read_vehicle_file(path: str | Path) -> VehicleFile:
