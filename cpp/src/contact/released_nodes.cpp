@@ -189,6 +189,15 @@ bool leads_into_surface(const ContactPass& pass, const Path& path) {
     return false;
 }
 
+// Does the node lag inside a wall that its block hangs over? The block's other nodes may stand before the wall.
+bool lags_inside(const ContactPass& pass, std::size_t b, std::size_t i, const TrussBlockState& nodes) {
+    if (!nodes.may_lag(i)) return false;
+    const Vec3 place(nodes.x[i], nodes.y[i], nodes.z[i]);
+    for (std::size_t k = 0; k < pass.near.size(); ++k)
+        if (is_solid_to(pass, b, i, k) && gap_at(pass, k, place) < -tolerance::touching_gap) return true;
+    return false;
+}
+
 // The truss of a node that an indentation releases extends to its free length. The first surface on its way stops it. A post
 // or a wall's upright edge releases it outside all surfaces but the one that it stands on. Skin that hung over a top may
 // be inside the wall: no surface stops that.
@@ -197,10 +206,10 @@ StoppedNode left_node(const ContactPass& pass, std::size_t i, double work, const
     const TrussBlock& truss = pass.mesh.block[block.index];
     const TrussBlockState& last = *block.start;
     const Path path{block.index, i, {last.x[i], last.y[i], last.z[i]}, free_place(truss, last, i)};
-    StoppedNode node{
-        i,   path.end, last.residual[i], last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i],
-        work};
-    const auto stop = last.may_lag(i) ? std::nullopt : find_first_stop(pass, path, distant);
+    const double residual = last.residual[i];
+    StoppedNode node{i, path.end, residual, residual, last.peak_deflection[i], 0.0, last.unloading[i], work};
+    const auto stop =
+        lags_inside(pass, block.index, i, last) ? std::nullopt : find_first_stop(pass, path, distant);
     if (!stop || (*stop == path.start && !leads_into_surface(pass, path))) return node;
     node.place = *stop;
     node.deflection = truss.length[i] - (*stop - anchor_of(truss, i)).norm();
