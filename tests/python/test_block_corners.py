@@ -134,7 +134,7 @@ def test_skin_on_an_edge_and_its_face_slides_the_same_by_any_step() -> None:
 @pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
 @pytest.mark.parametrize("offset", [0.1, 0.2])
 def test_skin_before_a_block_is_not_let_into_it_below_skin_that_hangs_over_its_top(offset: float) -> None:
-    """It was, in short steps: the 50-ms force was 967 kN at the usual tolerance and 1,117 kN at a tenth of it."""
+    """It was, in short steps: the 50-ms force was 967 kN, and 1,117 kN at a tenth of the tolerance."""
     truck = Vehicle.preset("mash_10000s")
     force = []
     for tolerance in (1e-3, 1e-4):
