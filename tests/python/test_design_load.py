@@ -608,6 +608,14 @@ def test_offsets_that_cover_the_row_ask_for_no_others(
     assert _cover_the_row(plan.varied["impact_offset"], plan) is not beyond
 
 
+@pytest.mark.parametrize(("yaw", "beyond"), [(0.0, False), (90.0, True)])
+def test_a_turned_vehicle_has_no_mirror_image(yaw: float, beyond: bool) -> None:
+    """Half a spacing covers the row only where left and right of the path are alike."""
+    simulation = Simulation(car(), Barrier.bollards(count=5, spacing=1.3), 6.0, impact_yaw=yaw)
+    plan = design_plan(simulation, {"impact_offset": [0.0, 0.65]}, 1.0, None, 1.0, 0.0)
+    assert _cover_the_row(plan.varied["impact_offset"], plan) is not beyond
+
+
 def test_that_a_moment_is_not_force_times_height_is_said_near_the_table(envelope: DesignLoad) -> None:
     told = "it is not the 50-ms force times its height"
     apart = [abs(row.moment / (row.force_50ms * row.height) - 1.0) > 0.03 for row in envelope if row.moment]

@@ -16,6 +16,7 @@ from ..result.run_warnings import warn_of_run
 from ..scene.mesh_check import warn_if_coarse
 from ..scene.scene import Scene
 from ..scene.settings import Settings
+from ..scene.text import pose_text
 from ..unit_check import given
 from ..units import Quantity, si
 from ..vehicle.vehicle import Vehicle
@@ -273,10 +274,8 @@ class Simulation:
 
     def __repr__(self) -> str:
         scene = self._scene
-        return (
-            f"Simulation({scene.vehicle.name}, {scene.barrier}, {scene.impact_speed:g} m/s, "
-            f"{scene.impact_angle:g} deg)"
-        )
+        approach = f"{scene.impact_speed:g} m/s, {scene.impact_angle:g} deg{pose_text(scene)}"
+        return f"Simulation({scene.vehicle.name}, {scene.barrier}, {approach})"
 
 
 def run_scene(scene: Scene) -> Result:

@@ -11,6 +11,7 @@ from ...barrier.text import barrier_text
 from ...base.arguments import checked
 from ...base.progress import progress_bar
 from ...scene.settings import Settings
+from ...scene.text import pose_text
 from ...simulation.parameters import varied
 from ...simulation.simulation import Simulation
 from .convergence import Limit
@@ -267,5 +268,5 @@ def _title(simulation: Simulation) -> str:
     scene = simulation.scene
     return (
         f"{scene.vehicle.title} ({scene.vehicle.n_nodes} nodes), {barrier_text(scene.barrier)}, "
-        f"{scene.impact_speed:g} m/s, {scene.impact_angle:g} deg"
+        f"{scene.impact_speed:g} m/s, {scene.impact_angle:g}°{pose_text(scene)}"
     )
