@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
     from .analysis import RunAnalysis
+    from .stored import Stored
 
 __all__ = ["CoreContactWarning", "bottomed_out", "core_complaints", "core_lines"]
 
@@ -33,9 +34,9 @@ class CoreContactWarning(UserWarning):
     """
 
 
-def core_complaints(scene: Scene, statistics: _core.StepStatistics) -> Iterator[Complaint]:
+def core_complaints(scene: Scene, statistics: _core.StepStatistics | Stored) -> Iterator[Complaint]:
     """Yield a complaint if the barrier's force on the rigid core exceeded the vehicle's weight."""
-    force = statistics.core_contact_force
+    force = float(getattr(statistics, "core_contact_force", 0.0))  # results of earlier versions have none
     limit = scene.vehicle.mass * units.g(1.0)
     if force > limit:
         causes = tuple(_causes(scene))

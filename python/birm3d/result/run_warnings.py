@@ -5,8 +5,9 @@ from __future__ import annotations
 from itertools import chain
 from typing import TYPE_CHECKING
 
+from ..scene.mesh_check import coarse_skins
 from .core_contact import core_complaints
-from .energy_balance import open_balances
+from .energy_balance import open_balances, open_rows
 from .leaning_posts import leaning_posts
 from .low_barrier import low_barrier
 from .missed import missed_barrier
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from .stored import Stored
 
 __all__ = [
+    "complaints_of",
     "complaints_of_run",
     "doubt_lines",
     "doubts",
@@ -43,6 +45,21 @@ def complaints_of_run(
         missed_barrier(scene, event),
         doubts(scene, statistics, event),
     )
+
+
+def complaints_of(result: RunAnalysis) -> Iterator[Complaint]:
+    """Yield what a run warned of, a coarse skin too; also of a result that was read from a file.
+
+    The balances are those of the rows, see :func:`birm3d.result.energy_balance.open_rows`.
+    """
+    scene, statistics, event = result.scene, result.statistics, result._event
+    yield from coarse_skins(scene)
+    yield from overlaps(scene, statistics)
+    yield from core_complaints(scene, statistics)
+    yield from open_rows(result)
+    if event is not None:
+        yield from missed_barrier(scene, event)
+        yield from doubts(scene, statistics, event)
 
 
 def doubts(
