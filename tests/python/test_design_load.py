@@ -62,6 +62,7 @@ def test_the_impulse_ends_when_the_vehicle_has_left() -> None:
 
 
 @pytest.mark.parametrize("name", BARRIERS)
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_recomputed_from_the_histories(name: str) -> None:
     """With scipy alone: J211-1 filter, means over 50 ms, a spring hit by the load in small steps."""
     barrier = BARRIERS[name]
@@ -368,6 +369,7 @@ def test_what_is_written(envelope: DesignLoad, tmp_path: Path) -> None:
     assert ("80 % of the class; design: its upper end" in labels) == any(row.band for row in envelope)
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_cautions_are_said_where_they_matter() -> None:
     free = birm3d.design_load(
         Simulation(car(), Barrier.jersey(length=9.0, segments=3, free_standing=True), 14.0, 30.0),

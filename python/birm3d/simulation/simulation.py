@@ -173,8 +173,9 @@ class Simulation:
             As a warning, if a balance of the run does not close: energy, momentum, or dissipation that falls.
         MissedBarrierWarning
             As a warning, if the vehicle went past the end of the barrier and never touched it.
-        LowBarrierWarning, LeaningPostWarning
-            As warnings, if a barrier that contains a front is low, or posts that lean threw the vehicle up.
+        LowBarrierWarning, LeaningPostWarning, TippingWarning
+            As warnings, if a barrier that contains a front is low, posts that lean threw the vehicle up, or a
+            free-standing segment would begin to tip.
         ValueError
             If the frames are more than the result's rows or outside the run, or if the run takes more steps
             than a record holds; :meth:`result` has those that were taken.
@@ -189,8 +190,8 @@ class Simulation:
             finally:
                 self._run_time += time.perf_counter() - start
             result = self._result()
-            balances, statistics, event = self._core.balances, self._core.statistics, self._core.event
-        warn_of_run(result.scene, statistics, balances, event)
+            balances = self._core.balances
+        warn_of_run(result, balances)
         return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:
