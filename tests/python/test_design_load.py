@@ -421,9 +421,9 @@ def test_a_scene_that_fails_is_named() -> None:
         ({"damping": -0.1}, "damping must be"),
         ({"quantile": 0.0}, "quantile must be > 0 and <= 1, got 0.0"),
         ({"quantile": math.nan}, "quantile must be"),
-        ({"offsets": []}, "impact_offset must have at least one value, got an empty list"),
-        ({"impact_angles": [math.nan]}, "impact_angle must be finite, got nan"),
-        ({"impact_speeds": ["fast"]}, "impact_speed"),
+        ({"offsets": []}, "offsets must have at least one value, got an empty list"),
+        ({"impact_angles": [math.nan]}, "impact_angles must be finite, got nan"),
+        ({"impact_speeds": ["fast"]}, "^impact_speeds must be a number in m/s, or text with"),
         ({"offsets": 0.3}, "offsets must be a list"),
     ],
 )

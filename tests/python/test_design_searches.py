@@ -332,6 +332,7 @@ def test_what_a_worst_offset_says(worst: birm3d.WorstOffset) -> None:
             "must have a free-standing Jersey barrier",
         ),
         (lambda sim: birm3d.worst_offset(sim, []), "spacings must be at least one"),
+        (lambda sim: birm3d.worst_offset(sim, ["wide"]), "^spacings must be a number in m, or text with one"),
         (lambda sim: birm3d.worst_offset(sim, [0.1]), "spacings must be finite and above the diameter"),
         (lambda sim: birm3d.worst_offset(sim, metric="beauty"), "metric must be one of"),
         (lambda sim: birm3d.worst_offset(sim, points=2), "points must be"),
