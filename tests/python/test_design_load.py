@@ -16,6 +16,7 @@ import pytest
 from birm3d import Barrier, DesignLoad, DesignLoadInterrupted, Settings, Simulation, Vehicle
 from birm3d.assessment.design_plan import design_plan
 from birm3d.assessment.design_remarks import _cover_the_row
+from birm3d.assessment.impact_end import AT_REST, end_of_impact
 from one_truss import one_truss
 from scipy.signal import butter, filtfilt
 from tires import quick_to_steer
@@ -59,6 +60,33 @@ def test_the_impulse_ends_when_the_vehicle_has_left() -> None:
     assert loads.impulse.sum() == pytest.approx(counted, rel=1e-9)
     assert whole > 1.1 * counted  # 30 % more
     assert "touches the barrier again after it has left: the impulse does not count that" in loads.summary()
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_the_impulse_ends_when_the_vehicle_rests_at_the_post() -> None:
+    """The van comes back and leans on the pole for 4 s: 94 kN s in all, of which the impact has 75."""
+    van = Vehicle.preset("van_3500", mesh_density=0.3)
+    result = Simulation(van, Barrier.pole(diameter=0.3), "65 km/h", impact_yaw=90.0).run()
+    assert "time_of_separation" not in result.metrics
+    end = end_of_impact(result)
+    speed = np.hypot(*result.velocity[:, :2].T)
+    at = int(np.searchsorted(result.time, end))
+    assert speed[at - 1] >= AT_REST > speed[at:].max()
+    (pole,) = birm3d.design_load(result, natural_period=0.05, draws=0)
+    dt, force = result.scene.settings.output_interval, -result.barrier_force[:, 0]
+    assert pole.impulse == pytest.approx(dt * force[1 : at + 1].sum(), rel=1e-9)
+    assert dt * force[1:].sum() > 1.2 * pole.impulse
+    first = int(np.argmax((result.time > 0.1) & (force == 0.0)))  # it loses contact, and comes back
+    assert dt * force[1:first].sum() == pytest.approx(pole.impulse, rel=0.08)
+    told = "After it has come to rest the vehicle still leans on pole: the impulse does not count that."
+    assert told in birm3d.design_load(result, natural_period=0.05, draws=0).caution
+
+
+def test_an_impact_that_is_cut_off_has_no_end() -> None:
+    cut = Simulation(car(), Barrier.pole(), 14.0, duration=0.03).run()
+    assert end_of_impact(cut) == math.inf
+    left = Simulation(car(), Barrier.rigid_wall(), 14.0).run()
+    assert end_of_impact(left) == left.metrics["time_of_separation"]
 
 
 @pytest.mark.parametrize("name", BARRIERS)

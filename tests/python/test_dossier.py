@@ -757,7 +757,7 @@ def test_what_limits_the_force_is_that_of_the_barrier(barrier: Barrier, told: st
 
 def test_impulse_of_the_design_loads_ends_with_the_separation(page: Page) -> None:
     (note,) = [text for text in page.texts["p"] if "Impulse:" in text]
-    assert "until the vehicle leaves the barrier; later contacts are not in it" in note
+    assert "until the vehicle leaves the barrier or comes to rest; what follows is not in it" in note
 
 
 def test_a_limit_of_the_old_edition_is_not_exceeded_by_the_new_one() -> None:
