@@ -113,7 +113,7 @@ def occupant_risk(
         ahead = _head_ahead(run, point, part, head_x)
         heavy = run.scene.vehicle.mass >= HEAVY_KG
         # Their texts alone are kept, not the scene that they are made of.
-        told = [one._replace(text=partial(str, one.text())) for one in complaints_of(run)]
+        told = [one._replace(text=partial(str, one.text()), advice=None) for one in complaints_of(run)]
         return OccupantRisk(pulse, ahead, edition, is_computed=True, is_heavy=heavy, complaints=told)
 
     if isinstance(result, Result):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from .. import _core
 from ..scene.mesh_check import coarse_skins
-from .core_contact import core_complaints
+from .core_contact import core_complaints, core_doubts
 from .energy_balance import open_balances, open_rows
 from .leaning_posts import leaning_posts
 from .low_barrier import low_barrier
@@ -89,7 +89,8 @@ def doubts_of(result: RunAnalysis) -> tuple[Complaint, ...]:
     """Return the complaints that say why the outcome of a run can not be relied on."""
     if result._event is None:
         return ()
-    return tuple(doubts(result.scene, result.statistics, result._event))
+    scene, statistics = result.scene, result.statistics
+    return (*doubts(scene, statistics, result._event), *core_doubts(scene, statistics))
 
 
 def worst_doubts(results: Iterable[RunAnalysis]) -> Iterator[str]:

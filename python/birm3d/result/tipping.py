@@ -46,7 +46,7 @@ def tipping(result: RunAnalysis) -> Iterator[Complaint]:
         return
     ratio = compute_metrics(result, [RATIO]).get(RATIO, 0.0)
     if ratio > TIPPING_LIMIT:
-        yield _complaint(ratio, partial(_segment, result))
+        yield _complaint(ratio, _segment(result))
 
 
 def tipping_of_extremes(scene: Scene, extremes: _core.Extremes) -> Iterator[Complaint]:
@@ -54,25 +54,25 @@ def tipping_of_extremes(scene: Scene, extremes: _core.Extremes) -> Iterator[Comp
     if can_tip(scene):
         ratio = extremes.segments.overturning / scene.settings.gravity
         if ratio > TIPPING_LIMIT:
-            yield _complaint(ratio, partial(str, "a segment"))
+            yield _complaint(ratio, "a segment")
 
 
-def _complaint(ratio: float, segment: partial[str]) -> Complaint:
+def _complaint(ratio: float, segment: str) -> Complaint:
     text, advice = partial(_text, ratio, segment), partial(_advice, ratio, segment)
     return Complaint(TippingWarning, RATIO, ratio, text, advice)
 
 
-def _text(ratio: float, segment: partial[str]) -> str:
+def _text(ratio: float, segment: str) -> str:
     return (
         f"{RATIO} must be at most {TIPPING_LIMIT:g} for segments that stay upright, got {ratio:.1f} of "
-        f"{segment()}: its overturning moment exceeds the restoring one of its weight. It would begin to "
+        f"{segment}: its overturning moment exceeds the restoring one of its weight. It would begin to "
         "tip, which is not computed; heavier segments, a wider base or an anchorage help"
     )
 
 
-def _advice(ratio: float, segment: partial[str]) -> str:
+def _advice(ratio: float, segment: str) -> str:
     return (
-        f"The overturning moment of {segment()} is {ratio:.1f} times its restoring one: it would begin to "
+        f"The overturning moment of {segment} is {ratio:.1f} times its restoring one: it would begin to "
         "tip, which is not computed. The outcome holds for segments that stay upright."
     )
 
