@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from .result.missed import MissedBarrierWarning
     from .result.overlap import OverlapWarning
     from .result.result import load, write_capsule
+    from .result.tipping import TippingWarning
     from .scene.mesh_check import CoarseSkinWarning
     from .scene.settings import Settings
     from .signals import filters, readers, reference
@@ -110,6 +111,7 @@ __all__ = [
     "Study",
     "StudyInterrupted",
     "StudyStoppedError",
+    "TippingWarning",
     "UnitWarning",
     "UnstableError",
     "Vehicle",
@@ -197,6 +199,7 @@ _WHERE = {
     "Study": "study:Study",
     "StudyInterrupted": "study.runner:StudyInterrupted",
     "StudyStoppedError": "study.runner:StudyStoppedError",
+    "TippingWarning": "result.tipping:TippingWarning",
     "UnitWarning": "unit_check:UnitWarning",
     "UnstableError": "_core:UnstableError",
     "Vehicle": "vehicle:Vehicle",

@@ -168,7 +168,11 @@ def warn_if_mesh_unusual(height: float) -> None:
 
 
 def warn_if_far_from_skin(
-    point: Sequence[float], low: Sequence[float], high: Sequence[float], stated: Sequence[bool]
+    point: Sequence[float],
+    low: Sequence[float],
+    high: Sequence[float],
+    stated: Sequence[bool],
+    name: str = "point",
 ) -> None:
     """Warn with :class:`UnitWarning` of a point more than 1 m outside a box: the skin's, in the file's axes.
 
@@ -180,7 +184,7 @@ def warn_if_far_from_skin(
         if meant or not math.isfinite(value) or first <= value <= last:
             continue
         _warn(
-            f"point with {axis} = {value:g} m",
+            f"{name} with {axis} = {value:g} m",
             "in another unit or in other axes than the vehicle's file",
             f"accepted without this warning is {axis} from {first:.2f} to {last:.2f} m, which is within "
             f"{_OUT_OF_SKIN:g} m of the skin, or text with its unit, as '{value:g} mm'",

@@ -112,6 +112,7 @@ def test_pickles_and_files_keep_them(kind: str) -> None:
 
 
 @EVERY
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_results_of_all_kinds_are_kept(kind: str, tmp_path: Path) -> None:
     result = Simulation(lab(), KINDS[kind][0], 6.0, 80.0, duration=0.15).run()
     result.save(tmp_path / "r")

@@ -51,6 +51,7 @@ CAR = ("run", "--vehicle", "passenger_car", "--mesh-density", "0.1", "--speed", 
     ],
 )  # fmt: skip
 @pytest.mark.filterwarnings("ignore::birm3d.LeaningPostWarning")
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_the_options_are_the_scene(
     command: Callable[..., int], capsys: pytest.CaptureFixture[str], options: str, barrier: Barrier
 ) -> None:

@@ -81,7 +81,7 @@ def test_of_a_scene_file_and_a_result(command, capsys, tmp_path) -> None:
             ["--standard", "ASTM F2656", "--reference-point", "1,b,2"],
             "--reference-point must be a name or x,y,z",
         ),
-        (["--standard", "ASTM F2656", "--reference-point", "antenna"], "point must be one of"),
+        (["--standard", "ASTM F2656", "--reference-point", "antenna"], "reference_point must be one of"),
         ([], "Missing option '--standard'"),
     ],
 )

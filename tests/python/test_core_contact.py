@@ -6,10 +6,11 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
 
+import birm3d
 import pytest
 from birm3d import Barrier, CoreContactWarning, Settings, Simulation, Vehicle, sweep, units
 from birm3d._core import StepStatistics
-from birm3d.result.core_contact import core_complaints
+from birm3d.result.core_contact import core_complaints, core_doubts
 from birm3d.study.verification.triangulated import triangulated
 from birm3d.vehicle.test_bodies import laboratory_block
 from conftest import STRIKE_THE_CORE
@@ -130,3 +131,29 @@ def test_the_warning_is_an_error_here_and_in_all_files_but_those_listed() -> Non
     here = Path(__file__)
     assert here.name not in STRIKE_THE_CORE
     assert {path.name for path in here.parent.glob("test_*.py")} >= STRIKE_THE_CORE
+
+
+def test_a_turned_vehicle_is_said_to_roll_as_the_blow_on_its_core_lifts_it() -> None:
+    """One degree of yaw apart a car is upright with 7 degrees of roll, and rolls over: both say so."""
+    told = "at poles one degree of yaw decides whether it rolls over"
+    car = Vehicle.preset("passenger_car")
+    outcomes = []
+    for yaw in (90.0, 91.0):
+        with pytest.warns(CoreContactWarning, match=told):
+            run = Simulation(car, Barrier.pole(diameter=0.3), "80 km/h", impact_yaw=yaw).run()
+        outcomes.append(run.outcome)
+        assert told in run.report()
+        assert told in birm3d.design_load(run, natural_period=0.1, draws=0).caution
+        rating = birm3d.rate(run, "ASTM F2656", vehicle_class="SC")
+        assert [doubt.kind for doubt in rating.doubts] == ["core_contact_force"]
+    assert outcomes == ["stopped", "rolled_over"]
+
+
+@pytest.mark.parametrize(("yaw", "turned"), [(0.0, False), (9.0, False), (-12.0, True), (172.0, False)])
+def test_only_turned_vehicles_are_in_doubt(yaw: float, turned: bool) -> None:
+    scene = Simulation(block(1e5), Barrier.rigid_wall(), 12.0, impact_yaw=yaw).scene
+    told = SimpleNamespace(core_contact_force=2.0 * scene.vehicle.mass * G, core_contact_time=0.1)
+    (complaint,) = core_complaints(scene, cast(StepStatistics, told))
+    assert (complaint.advice is not None) is turned
+    assert ("rolls over" in complaint.text()) is turned
+    assert len(list(core_doubts(scene, cast(StepStatistics, told)))) == turned

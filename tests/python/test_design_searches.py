@@ -214,6 +214,7 @@ def test_penetration_is_a_limit_too() -> None:
     assert all(run.measure <= 0.4 for run in found.runs if run.holds)
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_least_segment_mass() -> None:
     """The mass that the search gives keeps the deflection; the next one tried does not."""
     barrier = Barrier.jersey(length=40.0, segments=10, free_standing=FreeStanding(ground_friction=0.6))
@@ -331,6 +332,7 @@ def test_what_a_worst_offset_says(worst: birm3d.WorstOffset) -> None:
             "must have a free-standing Jersey barrier",
         ),
         (lambda sim: birm3d.worst_offset(sim, []), "spacings must be at least one"),
+        (lambda sim: birm3d.worst_offset(sim, ["wide"]), "^spacings must be a number in m, or text with one"),
         (lambda sim: birm3d.worst_offset(sim, [0.1]), "spacings must be finite and above the diameter"),
         (lambda sim: birm3d.worst_offset(sim, metric="beauty"), "metric must be one of"),
         (lambda sim: birm3d.worst_offset(sim, points=2), "points must be"),

@@ -140,6 +140,7 @@ def test_a_car_that_is_thrown_back_has_not_passed_where_it_rolls_later(
     assert result.outcome in ("stopped", "redirected")
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_a_segment_that_has_turned_does_not_shift_the_line_beyond_it() -> None:
     """Far beyond the chain's end, before the line, the vehicle counted as past the turned last segment."""
     chain = Barrier.jersey(length=24.0, segments=4, free_standing=True)

@@ -80,6 +80,7 @@ def of_all_kinds() -> list[Simulation]:
     ]
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_metrics_without_histories_are_those_of_the_result() -> None:
     study = ensemble(of_all_kinds(), metrics=ALL)
     assert not study.failed
@@ -92,6 +93,7 @@ def test_metrics_without_histories_are_those_of_the_result() -> None:
             assert found == expected or (np.isnan(found) and np.isnan(expected)), (i, name)
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_extremes_are_those_of_the_rows() -> None:
     """What the core finds is what NumPy finds in the rows; sums of three products round in either order."""
     for simulation in of_all_kinds():
@@ -197,6 +199,7 @@ def flat_anchors() -> Simulation:
     return Simulation(block, Barrier.rigid_wall(), 20.0, 70.0, settings=WEIGHTLESS)
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_what_needs_no_histories_is_what_they_hold() -> None:
     beside = Barrier.bollards(count=2, spacing=3.5)
     slim = Vehicle.preset("passenger_car", mesh_density=0.1)

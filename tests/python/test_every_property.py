@@ -169,6 +169,7 @@ def touch(instance: Any, folder: Path, pictures: bool = True) -> set[str]:
 
 @pytest.mark.filterwarnings("ignore::birm3d.scene.mesh_check.CoarseSkinWarning")
 @pytest.mark.parametrize("name", KINDS)
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_every_public_name_works(name: str, tmp_path: Path) -> None:
     instance = KINDS[name]()
     pictures = name not in (

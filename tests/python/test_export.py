@@ -124,6 +124,7 @@ def test_gltf_is_read_by_another_library(run: Result, tmp_path: Path) -> None:
     assert len(skin.faces) == 2 * run.scene.vehicle.n_elements
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_gltf_moves_segments_that_stand_free(pushed: Result, tmp_path: Path) -> None:
     pushed.write_gltf(tmp_path / "pushed.glb", frames=5)
     player = Player(tmp_path / "pushed.glb")
@@ -205,6 +206,7 @@ def test_vtk_has_nodes_crush_and_forces_of_the_result(run: Result, tmp_path: Pat
     assert walls[0].bounds[5] >= 1.0
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_vtk_of_a_vehicle_of_two_units_and_of_free_segments(pushed: Result, tmp_path: Path) -> None:
     pushed.write_vtk(tmp_path / "pushed.pvd", frames=3)
     walls = [mesh for _, name, mesh in series(tmp_path / "pushed.pvd") if name == "barrier"]

@@ -19,6 +19,9 @@ MASS, SPEED = 6804.0, 10.0  # of the laboratory block
 BOX = ((0.3, 0.0), (0.3, 2.0))  # vertical faces: nothing is pushed down
 GRAVITY = 9.80665
 
+# Blows are hard, to be solved exactly: what would tip stays upright.
+pytestmark = pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
+
 
 def block(stiffness: float) -> Vehicle:
     """Elastic, 96 nodes on a flat front."""

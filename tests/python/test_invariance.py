@@ -249,6 +249,7 @@ FAR: Mapping[str, tuple[str, Callable[[Point], Barrier], float, float]] = {
 
 
 @pytest.mark.parametrize(("vehicle", "barrier", "angle", "beside"), FAR.values(), ids=FAR.keys())
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_a_scene_far_away_has_the_same_bits(
     vehicle: str, barrier: Callable[[Point], Barrier], angle: float, beside: float
 ) -> None:

@@ -197,6 +197,7 @@ def _cube() -> tuple[list[list[float]], list[list[int]]]:
     return corners, faces
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_wrong_input(oblique: Result, cells: LoadMap) -> None:
     car = Vehicle.preset("passenger_car", mesh_density=0.1)
     posts = Simulation(car, Barrier.bollards(count=1), 8.0).run()

@@ -86,6 +86,7 @@ ELSEWHERE = {
         "Rerun",
         "WorstOffset",
         "DesignLoadInterrupted",
+        "WorkPrecisionInterrupted",
     ),
     *(
         "oblique",

@@ -462,14 +462,45 @@ def test_runs_without_a_rating_are_a_class_of_their_own() -> None:
             lambda r: rate(r, "ASTM F2656", vehicle_class="K"),
             "vehicle_class must be one of SC, FS, PU, M, C7, H",
         ),
-        (lambda r: rate(r, "ASTM F2656", reference_point="antenna"), "point must be one of"),
+        (lambda r: rate(r, "ASTM F2656", reference_point="antenna"), "^reference_point must be one of"),
+        (
+            lambda r: rate(r, "ASTM F2656", reference_point=(1.0, 2.0)),
+            "^reference_point must be three numbers",
+        ),
+        (
+            lambda r: rate(r, "ASTM F2656", reference_point=("x", 0, 0)),
+            "^reference_point must be a number in m",
+        ),
+        (
+            lambda r: rate(r, "ASTM F2656", reference_point=(math.nan, 0, 0)),
+            r"^reference_point must be three finite numbers \(m\), got \[nan, 0.0, 0.0\]",
+        ),
         (lambda r: rate(r, "MASH", reference_point=(0, 0, 0)), "reference_point must be None for MASH"),
+        (
+            lambda r: rate(r, "MASH TL-4", part="cargo_truck"),
+            "^part must be None for MASH, which measures to no",
+        ),
+        (lambda r: rate([r], "MASH TL-4", part=0), "^part must be None for MASH"),
         (lambda r: rate([r], "ASTM F2656"), "standard must name a level"),
     ],
 )
 def test_bad_input(stopped: Result, call: Callable[[Result], object], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         call(stopped)
+
+
+def test_a_vehicle_without_the_point_of_the_standard_asks_for_reference_point() -> None:
+    """The message named `point`, which rate() does not have."""
+    bus = Simulation(Vehicle.preset("bus_13t", mesh_density=0.1), Barrier.rigid_wall(), 10.0).run()
+    message = (
+        "^reference_point must be given for 'bus_13t', which has no 'load_bed_leading_edge', to which "
+        r"IWA 14-1 measures: one of mass_center, .*, or three numbers \(m\) in the axes of its file; got"
+    )
+    with pytest.raises(ValueError, match=message):
+        rate(bus, "IWA 14-1", vehicle_class="N3C")
+    assert rate(bus, "IWA 14-1", vehicle_class="N3C", reference_point="mass_center").penetration < 3.0
+    with pytest.warns(birm3d.UnitWarning, match="^reference_point with x = 100 m is most likely"):
+        rate(bus, "IWA 14-1", vehicle_class="N3C", reference_point=(100.0, 0.0, 1.0))
 
 
 def test_runs_that_can_not_be_rated(truck: Vehicle) -> None:

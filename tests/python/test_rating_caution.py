@@ -10,6 +10,7 @@ from birm3d.assessment.rating_caution import fails_clearly, level_cautions, mode
 
 
 @pytest.mark.parametrize("standard", ["IWA 14-1", "ISO 22343-1", "ASTM F2656", "PAS 68", "SD-STD-02.01"])
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_security_standards_tell_of_segments_that_would_tip(heavy_blow: Result, standard: str) -> None:
     """And no free-standing barrier is said to be rigid and not to give way."""
     ratio = heavy_blow.metrics["max_overturning_ratio"]

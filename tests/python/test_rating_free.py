@@ -27,6 +27,7 @@ def light() -> Result:
     return crash(100.0, 25.0, heading=30.0)
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_working_width_ends_at_the_rearmost_corner(light: Result) -> None:
     """Corners of every base from the motion of its segment; a front corner that moves most is no end."""
     barrier = light.scene.barrier
@@ -48,6 +49,7 @@ def test_working_width_ends_at_the_rearmost_corner(light: Result) -> None:
     assert row["working width"].value < 0.61 + row["dynamic deflection"].value - 0.005
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_a_segment_that_would_tip_is_told(light: Result) -> None:
     told, heavy = "it would begin to tip, which is not computed", crash(40.0, 2.0)
     assert light.overturning_ratio.max() > 1.0 > heavy.overturning_ratio.max()
@@ -103,6 +105,7 @@ def test_ratings_of_security_barriers_say_what_became_of_the_vehicle() -> None:
 
 
 @pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_a_vehicle_that_passed_and_rolled_over_is_not_called_upright() -> None:
     """The outcome has one word only, "passed"; the roll of 180 degrees and more is in the history."""
     block = Barrier.jersey(height=0.81, length=3.0, free_standing=True)

@@ -99,6 +99,7 @@ HASHES = {
 
 @pytest.mark.filterwarnings("ignore::birm3d.LeaningPostWarning")
 @pytest.mark.parametrize("name", SCENES)
+@pytest.mark.filterwarnings("ignore::birm3d.TippingWarning")
 def test_bits_of_the_last_state(name: str) -> None:
     assert f"{SCENES[name]().run().state_hash:016x}" == HASHES[name]
 

@@ -396,6 +396,7 @@ GOOD = {"impact_speed": norm(20.0, 1.0)}
         (lambda s: birm3d.sobol(s, GOOD, 10), "n must be a power of 2.*got 10"),
         (lambda s: birm3d.sobol(s, GOOD, 4, confidence=95.0), "confidence must be between 0 and 1, got 95.0"),
         (lambda s: birm3d.fragility(s, [], {}, 3), "speeds must have at least two"),
+        (lambda s: birm3d.fragility(s, ["fast", 2.0], {}, 3), "^speeds must be a number in m/s"),
         (lambda s: birm3d.fragility(s, [5.0, 4.0], GOOD, 3), r"increasing, got \[5.0, 4.0\]"),
         (lambda s: birm3d.fragility(s, [5.0, math.nan], GOOD, 3), "finite and increasing.*nan"),
         (lambda s: birm3d.fragility(s, [5.0, 6.0], GOOD, 3), "leave impact_speed to speeds"),

@@ -413,3 +413,16 @@ def test_site_builds_without_warnings(tmp_path: Path) -> None:
     assert not re.search(r'<(?:script|img|link)[^>]*(?:src|href)="https?://', text), (
         "a page needs the network"
     )
+
+
+def test_claims_on_poles_in_the_side_name_the_speed_that_they_hold_at() -> None:
+    """They were measured at one speed only."""
+    for page, claims in {
+        "CHANGELOG.md": ("0.85 to 1.2 times the impulse", "nothing in the last fifth before the nose"),
+        "docs/pages/validation.md": ("0.85 to 1.2 times the impulse",),
+    }.items():
+        text = " ".join((ROOT / page).read_text(encoding="utf-8").split())
+        for claim in claims:
+            before, found, _ = text.partition(claim)
+            assert found, (page, claim)
+            assert "14 m/s (50 km/h)" in before[-160:], (page, claim)

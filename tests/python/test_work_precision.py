@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -12,9 +13,10 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Settings, Simulation, Vehicle, scenes
-from birm3d.study import PrecisionRow, WorkPrecision, work_precision
+from birm3d.study import PrecisionRow, WorkPrecision, WorkPrecisionInterrupted, work_precision
 from birm3d.study.verification.convergence import Limit, limit_of, order_of, richardson
 from birm3d.study.verification.errors import BALANCES, BOOKKEEPING, least_scales, relative_errors
+from birm3d.study.verification.precision_runs import PrecisionRun, run_at
 from birm3d.study.verification.triangulated import triangulated
 
 PROGRAM = Path(__file__).resolve().parents[1] / "bench/bench_accuracy.py"
@@ -269,6 +271,7 @@ def test_report_table_and_figures(oblique: WorkPrecision, tmp_path: Path) -> Non
         ({"references": (1e-4, 1e-6)}, "references must be two tolerances or more, all below 1e-05"),
         ({"references": (1e-7, 1e-12)}, r"references: tolerance must .*got 1e-12"),
         ({"repeats": 0}, "repeats must be an integer >= 1, got 0"),
+        ({"most_steps": 0}, "most_steps must be an integer >= 1, got 0"),
         ({"mesh_densities": (1.0, 2.0, 4.0)}, "mesh_densities must .* of a vehicle that has a file"),
         ({"metrics": ("exit_angel",)}, r"metrics must be among .*got 'exit_angel'"),
         ({"metrics": ()}, "metrics must name at least one"),
@@ -316,3 +319,60 @@ def test_one_command_writes_the_page(tmp_path: Path) -> None:
         claims = list(csv.DictReader(file))
     assert [claim["holds"] for claim in claims] == ["yes"] * 3
     assert "holds  default tolerance within 1 %" in done.stdout
+
+
+# ---- what takes long ---------------------------------------------------------------------------------------
+
+
+def test_a_model_that_takes_too_many_steps_is_refused_and_not_run_stricter() -> None:
+    """At the default, along_truss took more than a million steps at a planter, two minutes a run."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    scene = Simulation(car, Barrier.rigid_wall(), 15.0, 24.0)
+    found = work_precision(scene, time_steps=(1e-3,), mesh_densities=(), most_steps=400, **QUICK)
+    other = "contact model along_truss"
+    assert [bool(row.refused) for row in found.of(other)] == [False, False, True, True, True]
+    said, *later = [row.refused for row in found.of(other) if row.refused]
+    assert said.startswith(
+        "TooManyStepsError: most_steps must be at least what the run takes, got 400, taken by"
+    )
+    assert later == ["not run: tolerance 1e-05 takes too many steps"] * 2
+    assert found.departures(other) == {}
+    assert max(row.steps for row in found.of()) > 400  # the scene as given has no such limit
+    assert found.report().count(f"{other}: refused") == 2
+    found.plot()
+
+
+def test_a_run_of_more_than_a_second_is_not_repeated() -> None:
+    run = run_at(scenes.w2(4), "as given", "tolerance", 1e-2)
+    run.once()
+    run.once()
+    assert len(run.times) == 2
+    run.times[0] = 1.5
+    run.once()
+    assert len(run.times) == 2
+
+
+@pytest.mark.parametrize(("stop_at", "known"), [(3, False), (7, True)])
+def test_ctrl_c_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch, stop_at: int, known: bool) -> None:
+    """The scene as given comes first, with its converged values: from then on there are errors."""
+    taken = []
+    once = PrecisionRun.once
+
+    def interrupted(run: PrecisionRun) -> None:
+        taken.append(run)
+        if len(taken) > stop_at + 1:  # the first is the warm-up
+            raise KeyboardInterrupt
+        once(run)
+
+    monkeypatch.setattr(PrecisionRun, "once", interrupted)
+    with pytest.raises(WorkPrecisionInterrupted, match=rf"stopped after {stop_at} of 16 runs") as stopped:
+        work_precision(scenes.w2(24), time_steps=(1e-3,), mesh_densities=(), **QUICK)
+    found = stopped.value.work_precision
+    assert (found is not None) == known
+    assert isinstance(stopped.value, KeyboardInterrupt)
+    assert pickle.loads(pickle.dumps(stopped.value)).args == stopped.value.args
+    if found is not None:
+        assert found.recommend(0.01).row.variant == "as given"
+        missing = {row.refused for row in found.rows if row.variant != "as given"}
+        assert missing == {"", "not run: interrupted before it"}
+        assert all(row.errors for row in found.of())

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
+import numpy.typing as npt
 
 from ..barrier.barrier import Barrier
 from ..barrier.kinds import Bollards
@@ -15,6 +16,7 @@ from ..result.result import Result
 from ..result.run_warnings import worst_lines
 from ..signals.filters import cfc
 from .element_design import peak_filter
+from .impact_end import end_of_impact
 from .vehicles import HEAVY_KG
 
 __all__ = ["barrier_caution", "has_blow", "height_caution", "merged", "run_cautions"]
@@ -59,6 +61,7 @@ _UNTOUCHED = "In a run the vehicle does not touch the barrier: that run adds no 
 _OVER = "In a run the vehicle goes over {elements}: wheels meet nothing ahead of them, so loads are missing."
 _PAST = "In a run the vehicle gets past {elements}: stopping it asks for more."
 _LATER = "In a run the vehicle touches {elements} again after it has left: the impulse does not count that."
+_LEANS = "After it has come to rest the vehicle still leans on {elements}: the impulse does not count that."
 _UNDECIDED = "The outcome was not decided when a run ended: later loads on {elements} are missing."
 
 _LOW = (
@@ -70,6 +73,7 @@ _LOW = (
 
 _LEAST_SHARE = 0.01  # elements that carry less than this share of the greatest load are not mentioned
 _OF_FILTERED = 2.0  # a peak that is as many times its filtered value is called a blow
+_LEANS_ON = 0.02  # a lean that adds more than this share to the impulse is mentioned
 _STILL_ACTS = 0.05  # a force that ends above this share of its peak still acts
 
 
@@ -104,6 +108,9 @@ def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:
     loads = [load for load in loads if load.peak_force > least]
     kinds = ((_ACTS, _acts_at_end), (_ALONG, _is_along), (_BLOW, _has_blow))
     found = {text: tuple(load.name for load in loads if holds(load)) for text, holds in kinds}
+    if "time_of_separation" not in result.metrics:
+        later = result.time > end_of_impact(result)
+        found[_LEANS] = tuple(load.name for load in loads if _leans(load, later))
     found[_TIPS] = _tipping(result)
     if loads and height_caution(result):
         found[_LOW] = ("the barrier",)
@@ -147,6 +154,12 @@ def merged(runs: Iterable[Mapping[str, tuple[str, ...]]], doubts: Iterable[Compl
             names.setdefault(text, {}).update(dict.fromkeys(elements))
     texts = [text.format(elements=", ".join(elements)) for text, elements in names.items()]
     return texts + list(worst_lines(doubts))
+
+
+def _leans(load: ElementLoad, later: npt.NDArray[np.bool_]) -> bool:
+    """Whether the load in later rows than those of the impact would add to the impulse."""
+    lean, whole = (float(np.linalg.norm(load.force[rows].sum(axis=0))) for rows in (later, slice(None)))
+    return lean > _LEANS_ON * whole
 
 
 def _acts_at_end(load: ElementLoad) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Any, NamedTuple
@@ -28,6 +27,7 @@ from .design_table import DesignLoad, LoadScene
 from .element_demand import element_design
 from .element_design import ElementDesign, System, peak_filter
 from .element_envelope import envelope
+from .impact_end import end_of_impact
 
 __all__ = [
     "DesignLoadInterrupted",
@@ -232,14 +232,14 @@ def _look(result: Result, normal: Floats, system: System) -> _Found:
 
 
 def _rows_of(result: Result, normal: Floats, system: System) -> list[ElementDesign]:
-    separation = result.metrics.get("time_of_separation", math.inf)
+    end = end_of_impact(result)
     barrier = result.scene.barrier
     weaker = barrier.weaker if isinstance(barrier, Bollards) else None
     yielded = np.zeros(len(result.element_loads), bool)
     tilt = result.post_tilt
     yielded[: tilt.shape[1]] = (tilt > 0.0).any(axis=0)
     return [
-        element_design(load, normal, system, separation, weaker, bool(has))
+        element_design(load, normal, system, end, weaker, bool(has))
         for load, has in zip(result.element_loads, yielded, strict=True)
     ]
 

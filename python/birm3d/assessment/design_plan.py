@@ -11,18 +11,25 @@ import numpy as np
 import numpy.typing as npt
 
 from ..barrier.barrier import Barrier
-from ..base.checks import check_runs, number
+from ..base.checks import check_runs
 from ..result.result import Result
 from ..scene.scene import Scene
-from ..simulation.parameters import in_si, varied_scene
+from ..simulation.parameters import varied_scene
 from ..simulation.simulation import Simulation
 from ..study.predict import Prediction
 from ..study.table import Study
 from ..unit_check import given, warn_if_any_unusual
-from ..units import Quantity
+from ..units import Quantity, si
 from .element_design import System, check_system
 
 __all__ = ["ASSUMED_PERIOD", "DesignPlan", "design_plan", "predicted_scene"]
+
+_ARGUMENTS = {
+    "impact_offset": ("offsets", "length"),
+    "impact_angle": ("impact_angles", "angle"),
+    "impact_speed": ("impact_speeds", "speed"),
+}
+"""Parameter -> argument of :func:`birm3d.design_load` that lists its values, and their quantity."""
 
 Floats = npt.NDArray[np.float64]
 
@@ -111,12 +118,13 @@ def _listed(cases: Simulation | Result | Study | Sequence[Simulation | Result]) 
 def _values(name: str, values: Iterable[Quantity]) -> list[float]:
     stated = list(values)
     warn_if_any_unusual(name, stated)
-    found = [number(name, in_si(name, value)) for value in stated]
+    argument, quantity = _ARGUMENTS[name]
+    found = [si(argument, value, quantity) for value in stated]
     if not found:
-        raise ValueError(f"{name} must have at least one value, got an empty list")
+        raise ValueError(f"{argument} must have at least one value, got an empty list")
     for value in found:
         if not math.isfinite(value):
-            raise ValueError(f"{name} must be finite, got {value}")
+            raise ValueError(f"{argument} must be finite, got {value}")
     return found
 
 

@@ -152,7 +152,9 @@ def _cover_the_row(offsets: Sequence[float], plan: DesignPlan) -> bool:
     shares = (high - low) / barrier.spacing
     if shares >= 1.0 - _CLOSE:
         return True
-    if shares < 0.5 - _CLOSE or any(scene.impact_angle != 90.0 for scene in plan.scenes):
+    if shares < 0.5 - _CLOSE or any(
+        scene.impact_angle != 90.0 or scene.impact_yaw != 0.0 for scene in plan.scenes
+    ):
         return False
     first = barrier.station() + barrier.places()[0][1]
     at = 2.0 * (low - first) / barrier.spacing

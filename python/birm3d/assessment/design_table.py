@@ -17,6 +17,7 @@ from ..base.checks import array, is_whole, shown
 from ..base.frozen_mapping import FrozenMapping
 from ..io.atomic_write import whole_file
 from ..scene.scene import Scene
+from ..scene.text import pose_text
 from .criteria import table_html, table_text
 from .design_cells import is_loaded, load_cell, side_cell
 from .element_demand import static_force
@@ -56,6 +57,10 @@ class LoadScene(NamedTuple):
     impact_angle: float  # deg
     impact_offset: float  # m
     title: str  # of the vehicle
+    impact_yaw: float = 0.0  # deg
+    impact_roll: float = 0.0  # deg
+    overlap: float | None = None
+    overlap_side: str = "left"
 
     @classmethod
     def of(cls, scene: Scene) -> LoadScene:
@@ -67,13 +72,16 @@ class LoadScene(NamedTuple):
             scene.impact_angle,
             scene.impact_offset,
             scene.vehicle.title,
+            scene.impact_yaw,
+            scene.impact_roll,
+            scene.overlap,
+            scene.overlap_side,
         )
 
     def __str__(self) -> str:
         return (
             f"{self.title}, {self.mass:,.0f} kg, {self.impact_speed:.2f} m/s "
-            f"({self.impact_speed / units.mph:.1f} mph), {self.impact_angle:g}°, "
-            f"offset {self.impact_offset:g} m"
+            f"({self.impact_speed / units.mph:.1f} mph), {self.impact_angle:g}°{pose_text(self)}"
         )
 
 

@@ -25,6 +25,7 @@ __all__ = ["element_design", "static_force"]
 
 Floats = npt.NDArray[np.float64]
 
+_AT_ROW = 1e-6  # an instant that is so near to a row, in intervals, is the row's
 _MOST_OF_ONE_PULSE = 2.0  # no single pulse has a greater dynamic load factor
 
 
@@ -32,13 +33,13 @@ def element_design(
     load: ElementLoad,
     normal: Floats,
     system: System,
-    separation: float = math.inf,
+    end: float = math.inf,
     weaker: Weaker | None = None,
     has_yielded: bool = False,
 ) -> ElementDesign:
     """Return what an element has to carry in one scene; ``normal`` is that into the barrier, system in SI.
 
-    The impulse is that up to the time of ``separation`` [s]. ``weaker``: what gives way of posts that yield;
+    The impulse is that up to the ``end`` of the impact [s]. ``weaker``: what gives way of posts that yield;
     ``has_yielded``: whether this one does.
     """
     if not load.touched:
@@ -52,7 +53,7 @@ def element_design(
         load.force if peak_filter(load.interval) == "unfiltered" else cfc(load.force, 60, load.interval)
     )
     # The first row is the mean over the second one's interval.
-    rows = math.ceil(min(separation / load.interval, len(load.force)))
+    rows = math.ceil(min(end / load.interval - _AT_ROW, len(load.force)))
     impulse = load.interval * load.force[1 : rows + 1].sum(axis=0)
     height = float(resultant_height(force, moment, load.line)[row])
     peak = float(lateral_level(filtered, load, normal).max())

@@ -79,8 +79,9 @@ class ElementDesign:
         Place among ``barrier.element_names``.
     name : str
     impulse : float
-        Along the barrier's normal, positive into the barrier [N s]; until the vehicle separated from the
-        barrier, if it did. All other values count later contacts, too.
+        Along the barrier's normal, positive into the barrier [N s]. It is that of the impact: until the
+        vehicle separated from the barrier for good, or came to rest at it (slower than 0.25 m/s from then
+        on). All other values count what follows, too.
     impulse_vector : ndarray, shape (3,)
         In world axes, of the same scene [N s].
     peak_force : float

@@ -14,6 +14,7 @@ from ..barrier.surfaces import barrier_axes, barrier_surfaces
 from ..result.capture import capture
 from ..result.event import gets_past
 from ..result.metrics import ALONG_LINE
+from ..result.sensor import place_sensor
 from ..units import Stated
 from ..vehicle.unit_shapes import unit_shapes
 from .criteria import Criterion
@@ -80,9 +81,9 @@ def penetration_history(
     datum
         Across the barrier from its line [m].
     """
-    right = result.sensor(point, part)
+    right = place_sensor(result, point, part, "reference_point")
     x, y, z = map(Stated, right.point)  # no second UnitWarning of the same point
-    left = result.sensor((x, Stated(-y), z), right.part)
+    left = place_sensor(result, (x, Stated(-y), z), right.part)
     both = [across_barrier(result, sensor.position) for sensor in (right, left)]
     return np.maximum(*both) - datum
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import overload
 
 from ..base.arguments import checked
 from ..result import Result
+from ..result.run_warnings import complaints_of
 from ..signals.channel import Channel
 from ..study.predict import Prediction
 from ..study.table import Study
@@ -110,7 +112,9 @@ def occupant_risk(
         pulse = pulse_of_result(run, point, part)
         ahead = _head_ahead(run, point, part, head_x)
         heavy = run.scene.vehicle.mass >= HEAVY_KG
-        return OccupantRisk(pulse, ahead, edition, is_computed=True, is_heavy=heavy)
+        # Their texts alone are kept, not the scene that they are made of.
+        told = [one._replace(text=partial(str, one.text()), advice=None) for one in complaints_of(run)]
+        return OccupantRisk(pulse, ahead, edition, is_computed=True, is_heavy=heavy, complaints=told)
 
     if isinstance(result, Result):
         return look(result)

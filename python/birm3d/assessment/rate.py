@@ -96,6 +96,9 @@ def rate(
         barrier, has a path along it, or is not over. If the tests of a level are at different barriers.
     """
     name, rest = split_standard(standard)
+    for argument, value in (("reference_point", reference_point), ("part", part)):
+        if value is not None and name in _ROADSIDE:
+            raise ValueError(f"{argument} must be None for {name}, which measures to no point; got {value!r}")
     if isinstance(result, Prediction):
         result = result.study
     if isinstance(result, Study):
@@ -168,6 +171,4 @@ def _of_run(
                 f"standard must be {name!r} alone: the level follows from the run; got {rest!r} too"
             )
         return rate_security(run, SECURITY[name], vehicle_class, point, part)
-    if point is not None:
-        raise ValueError(f"reference_point must be None for {name}, which has none; got {point!r}")
     return rate_roadside(run, _ROADSIDE[name], rest, vehicle_class)

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arguments import checked
+from ..base.complaints import Complaints
 from ..base.frozen_mapping import FrozenMapping
 from ..study.predict import SHARE, quantiles
 from ..study.whole_runs import require_found
@@ -20,6 +21,10 @@ __all__ = ["RiskStudy", "risk_of_study"]
 
 Floats = npt.NDArray[np.float64]
 
+_NOT_FRONTAL = (
+    "OLC is for frontal pulses: in {n:,} of {all:,} runs the speed changes more across the vehicle than it "
+    "falls along it, and a low OLC says nothing."
+)
 _HEAD = ("criterion", "median", "80 % band", "limit", "runs within the limit")
 
 
@@ -38,6 +43,7 @@ class RiskStudy:
 
     def __init__(self, risks: Mapping[int, OccupantRisk], failed: Mapping[int, str]) -> None:
         self.risks = tuple(risks.values())
+        self._by_run = dict(risks)
         self.failed = FrozenMapping(dict(failed))
         bands = {name: quantiles(values, SHARE) for name, values in self.values.items()}
         self.low, self.median, self.high = (
@@ -83,13 +89,28 @@ class RiskStudy:
         return f"occupant risk of {len(self.risks)} runs; all limits are met in: {shares}{without}"
 
     @property
-    def _heavy(self) -> list[str]:
-        """Return that no standard judges the occupants, if that is so of any of the vehicles."""
-        return [NOT_JUDGED] if any(risk.is_heavy for risk in self.risks) else []
+    def warnings(self) -> tuple[str, ...]:
+        """What the runs warned of, of each kind the worst, with the numbers of the runs."""
+        told = Complaints()
+        for run, risk in self._by_run.items():
+            told.add(run, risk._complaints)
+        runs = len(self.risks) + len(self.failed)
+        return tuple(f"{category.__name__}: {text}" for category, text in told.summaries(runs))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What to consider before the values are used: warnings of runs, and where no standard judges."""
+        side = sum(not risk._is_frontal() for risk in self.risks)
+        heavy = any(risk.is_heavy for risk in self.risks)
+        return (
+            *([NOT_JUDGED] if heavy else []),
+            *self.warnings,
+            *([_NOT_FRONTAL.format(n=side, all=len(self.risks))] if side else []),
+        )
 
     def summary(self) -> str:
         """Return medians, bands, limits and the caution as text."""
-        return "\n".join([self._title, *self._heavy, table_text(_HEAD, self.rows), CAUTION])
+        return "\n".join([self._title, *self.notes, table_text(_HEAD, self.rows), CAUTION])
 
     __str__ = summary
 
@@ -102,10 +123,11 @@ class RiskStudy:
             },
             "passed": {name: self.passed(name) for name in (*FLAIL_LIMITS, "EN 1317")},
             "failed": {str(run): reason for run, reason in self.failed.items()},
+            "notes": list(self.notes),
         }
 
     def _repr_html_(self) -> str:
-        return table_html(". ".join([self._title, *self._heavy]), _HEAD, self.rows, CAUTION)
+        return table_html(". ".join([self._title, *self.notes]), _HEAD, self.rows, CAUTION)
 
     def __repr__(self) -> str:
         bands = ", ".join(

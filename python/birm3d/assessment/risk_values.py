@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from .. import units
 from ..base.arguments import checked
+from ..base.complaints import Complaint
 from .criteria import Criterion, criteria_html, criteria_text
 from .flail import FlailSpace, HeadImpact, flail_space, head_impact, occupant_load
 from .limits import (
@@ -41,6 +43,10 @@ _PUSHED_ON = (
     "The vehicle gains {gained:.1f} m/s along x: it is pushed on, not braked, and OLC does not apply. "
     "If it was braked, the channel has the wrong sign: x is positive forward."
 )
+_NOT_FRONTAL = (
+    "OLC is for frontal pulses. Here the speed changes by {across:.1f} m/s across the vehicle and falls by "
+    "{along:.1f} m/s along it: a low OLC says nothing, and it has no class."
+)
 _VALUES = ("oiv_x", "oiv_y", "ridedown_x", "ridedown_y", "asi", "asi_1998", "thiv", "phd", "olc")
 
 
@@ -49,17 +55,26 @@ class OccupantRisk:
 
     A value that needs a channel which was not given raises a ValueError that names it; the table says so.
     Values of a computed run, not of channels (``is_computed``), have no band, and the table says so. It also
-    says where no standard judges the occupants of so heavy a vehicle (``is_heavy``).
+    says where no standard judges the occupants of so heavy a vehicle (``is_heavy``), and what the run warned
+    of (``warnings``).
     """
 
     def __init__(
-        self, pulse: Pulse, head_x: float, edition: int, *, is_computed: bool = False, is_heavy: bool = False
+        self,
+        pulse: Pulse,
+        head_x: float,
+        edition: int,
+        *,
+        is_computed: bool = False,
+        is_heavy: bool = False,
+        complaints: Sequence[Complaint] = (),
     ) -> None:
         self.pulse = pulse
         self.head_x = head_x
         self.edition = edition
         self.is_computed = is_computed
         self.is_heavy = is_heavy
+        self._complaints = tuple(complaints)
         self._flail: FlailSpace = flail_space(pulse)
 
     @property
@@ -128,7 +143,7 @@ class OccupantRisk:
 
     @cached_property
     def olc(self) -> float:
-        """Occupant load criterion: 65 mm of free flight, 235 mm of even restraint [g]."""
+        """Occupant load criterion: 65 mm of free flight, 235 mm of even restraint [g]; of frontal pulses."""
         return occupant_load(self.pulse)
 
     @cached_property
@@ -154,9 +169,30 @@ class OccupantRisk:
                 ),
             ]
         low, high = OLC_LIMITS_G
-        grade = "low" if self.olc <= low else "medium" if self.olc <= high else "high"
         limit = f"none; car to car {low:g} to {high:g} g"
-        return (*found, Criterion("OLC", self.olc, "g", limit, None, grade))
+        return (*found, Criterion("OLC", self.olc, "g", limit, None, self._olc_class()))
+
+    def _olc_class(self) -> str:
+        if self._is_pushed_on() or not self._is_frontal():
+            return "not frontal"
+        low, high = OLC_LIMITS_G
+        return "low" if self.olc <= low else "medium" if self.olc <= high else "high"
+
+    def _changes(self) -> tuple[float, float]:
+        """Return the greatest loss of speed along the vehicle, and the greatest change across it [m/s]."""
+        _, velocity = self.pulse.since_zero()
+        return max(0.0, -float(velocity[:, 0].min())), float(abs(velocity[:, 1]).max())
+
+    def _is_frontal(self) -> bool:
+        along, across = self._changes()
+        return along > across
+
+    def _gained(self) -> float:
+        """Return the gain of speed along the vehicle from time zero to the end [m/s]."""
+        return float(self.pulse.velocity[-1, 0] - self.pulse.velocity[self.pulse.zero, 0])
+
+    def _is_pushed_on(self) -> bool:
+        return "x" in self.pulse.known and self._gained() > _FORWARD
 
     def _indices(self) -> tuple[tuple[int, float], tuple[int, float]]:
         return (2010, self.asi_2010), (1998, self.asi_1998)
@@ -172,12 +208,23 @@ class OccupantRisk:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What to consider before the values are used."""
-        notes = (NOT_JUDGED,) if self.is_heavy else ()
-        gained = self.pulse.velocity[-1, 0] - self.pulse.velocity[self.pulse.zero, 0]
-        if "x" in self.pulse.known and gained > _FORWARD:
-            return (*notes, _PUSHED_ON.format(gained=gained))
-        return notes
+        """What to consider before the values are used: of a computed run also what it warned of."""
+        return tuple(self._notes())
+
+    def _notes(self) -> Iterator[str]:
+        if self.is_heavy:
+            yield NOT_JUDGED
+        yield from self.warnings
+        along, across = self._changes()
+        if self._is_pushed_on() and self._gained() > across:
+            yield _PUSHED_ON.format(gained=self._gained())
+        elif not self._is_frontal():
+            yield _NOT_FRONTAL.format(along=along, across=across)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the run warned of, each after the name of its class; of channels none."""
+        return tuple(f"{one.category.__name__}: {one.text()}" for one in self._complaints)
 
     @checked
     def passed(self, standard: str) -> bool:

@@ -22,7 +22,7 @@ from .doubts import Doubt, doubts_of_run
 from .measures import barrier_extent, check_side_on, heading_rows, movement_rows, penetration_history
 from .rating import Rating, first_reached
 from .rating_caution import model_cautions, tipping_doubts
-from .vehicles import A_PILLAR, LOAD_BED, StandardVehicle, standard_vehicle
+from .vehicles import A_PILLAR, LOAD_BED, StandardVehicle, measured_point, standard_vehicle
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -138,9 +138,9 @@ def rate_security(
     vehicle = standard_vehicle(standard.name, standard.vehicles, result.scene.vehicle, vehicle_class)
     extent = barrier_extent(result.scene.barrier) if result.scene.barrier is not None else None
     assert extent is not None  # check_side_on has refused None
-    found = _penetration(
-        result, vehicle.point if point is None else point, part, getattr(extent, standard.datum)
-    )
+    if point is None:
+        point = measured_point(standard.name, vehicle, result.scene.vehicle)
+    found = _penetration(result, point, part, getattr(extent, standard.datum))
     measured = Criterion(
         f"penetration past the {standard.datum} face",
         found.greatest,

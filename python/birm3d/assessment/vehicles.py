@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from ..vehicle import Vehicle
 
-__all__ = ["A_PILLAR", "HEAVY_KG", "LOAD_BED", "StandardVehicle", "standard_vehicle"]
+__all__ = ["A_PILLAR", "HEAVY_KG", "LOAD_BED", "StandardVehicle", "measured_point", "standard_vehicle"]
 
 A_PILLAR = "a_pillar_base"
 LOAD_BED = "load_bed_leading_edge"
@@ -79,4 +79,22 @@ def standard_vehicle(
     raise ValueError(
         f"vehicle must be one that {standard} knows: {', '.join(one.words for one in known if one.chosen)}; "
         f"got {vehicle.name!r} ({kind}, {vehicle.mass:,.0f} kg). vehicle_class= takes its place"
+    )
+
+
+def measured_point(standard: str, meant: StandardVehicle, vehicle: Vehicle) -> str:
+    """Return the point to which a standard measures the penetration of a vehicle.
+
+    Raises
+    ------
+    ValueError
+        If the vehicle has no such point; the message names those that it has.
+    """
+    known = dict.fromkeys(name for unit in vehicle.units for name in unit.points)
+    if meant.point in known:
+        return meant.point
+    raise ValueError(
+        f"reference_point must be given for {vehicle.name!r}, which has no {meant.point!r}, to which "
+        f"{standard} measures: one of {', '.join(known)}, or three numbers (m) in the axes of its file; "
+        "got None"
     )

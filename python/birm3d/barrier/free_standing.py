@@ -20,8 +20,9 @@ class FreeStanding:
     """Segments that stand on the ground by their weight and slide when they are hit.
 
     A segment moves along the ground and turns about the vertical. It does not tip: how near it comes to that
-    is in :attr:`birm3d.Result.overturning_ratio`. Its mass and inertia follow from its solid. What pushes it
-    down adds to its weight on the ground, evenly over its base; Coulomb friction acts at the four corners.
+    is in :attr:`birm3d.Result.overturning_ratio`; beyond 1 there is a :class:`birm3d.TippingWarning`. Its
+    mass and inertia follow from its solid. What pushes it down adds to its weight on the ground, evenly over
+    its base; Coulomb friction acts at the four corners.
 
     Parameters
     ----------

@@ -105,7 +105,10 @@ def _as_json(result: Result) -> dict[str, Any]:
         "vehicle": scene.vehicle.name,
         "mass": scene.vehicle.mass,
         "impact_speed": scene.impact_speed,
-        "impact_angle": scene.impact_angle,
+        **{
+            name: getattr(scene, name)
+            for name in ("impact_angle", "impact_offset", "impact_yaw", "impact_roll")
+        },
         "outcome": result.outcome,
         "outcome_detail": result.outcome_detail,
         "end_reason": result.end_reason,
@@ -120,7 +123,7 @@ def _print_outcome(result: Result) -> None:
     from rich.table import Table
 
     from ..result.report import END_REASONS
-    from ..scene.text import overlap_text
+    from ..scene.text import pose_text
     from ..vehicle.title import vehicle_text
 
     scene = result.scene
@@ -129,7 +132,7 @@ def _print_outcome(result: Result) -> None:
         "value",
         "unit",
         title=f"{vehicle_text(scene.vehicle)}, {scene.impact_speed:.2f} m/s "
-        f"({scene.impact_speed / units.mph:.1f} mph) at {scene.impact_angle:g}°{overlap_text(scene)}",
+        f"({scene.impact_speed / units.mph:.1f} mph) at {scene.impact_angle:g}°{pose_text(scene)}",
         caption=f"ended at {result.time[-1] * 1e3:.0f} ms: {END_REASONS[result.end_reason]}; "
         f"{result.statistics.steps} steps in {result.run_time * 1e3:.1f} ms of computing",
     )

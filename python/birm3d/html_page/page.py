@@ -23,6 +23,7 @@ from ..scene.text import scene_text
 from ..vehicle.title import vehicle_text
 from .notebook import figure_html
 from .page_data import page_data
+from .scene_cards import turned_rows
 
 if TYPE_CHECKING:
     from ..barrier.barrier import Barrier
@@ -134,6 +135,7 @@ def _scene_rows(result: Result) -> list[tuple[str, ...]]:
         ("impact speed", f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph)"),
         ("impact angle", f"{scene.impact_angle:g}° from the barrier's line"),
         _aim(scene),
+        *turned_rows(scene),
         ("time steps", steps),
         ("contact, tyres", f"{settings.contact_model}, {settings.tire_model}"),
         ("ended", f"at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}"),

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..scene.scene import Scene
     from ..vehicle.vehicle import Vehicle
 
-__all__ = ["barrier_html", "scene_html", "vehicle_html"]
+__all__ = ["barrier_html", "scene_html", "turned_rows", "vehicle_html"]
 
 _Row = tuple[str, str]
 
@@ -76,6 +76,13 @@ def _size_text(value: object, unit: str) -> str:
     return "without end" if math.isinf(value) else f"{value:g} {unit}".rstrip()
 
 
+def turned_rows(scene: Scene) -> Iterator[_Row]:
+    """Yield yaw and roll at impact, those that are not 0."""
+    for name in ("impact_yaw", "impact_roll"):
+        if getattr(scene, name) != 0.0:
+            yield name.removeprefix("impact_"), f"{getattr(scene, name):g}°"
+
+
 def _approach_rows(scene: Scene) -> Iterator[_Row]:
     speed = scene.impact_speed
     yield "speed", f"{speed:.2f} m/s ({speed / units.km_h:.1f} km/h, {speed / units.mph:.1f} mph)"
@@ -83,7 +90,5 @@ def _approach_rows(scene: Scene) -> Iterator[_Row]:
         yield "angle", f"{scene.impact_angle:g}°"
         yield "offset", f"{scene.path_offset:.3g} m{overlap_text(scene)}"
         yield "standoff", f"{scene.standoff:g} m"
-    for name in ("impact_yaw", "impact_roll"):
-        if getattr(scene, name) != 0.0:
-            yield name.removeprefix("impact_"), f"{getattr(scene, name):g}°"
+    yield from turned_rows(scene)
     yield "duration", "until the outcome is decided" if scene.duration is None else f"{scene.duration:g} s"

@@ -34,11 +34,14 @@ _PARTS: Mapping[str, Callable[[Scene], str]] = {
     "vehicle": lambda scene: vehicle_text(scene.vehicle),
     "speed": lambda scene: f"{scene.impact_speed:.2f} m/s ({scene.impact_speed / units.mph:.1f} mph)",
     "angle": lambda scene: f"{scene.impact_angle:g}°{overlap_text(scene)}",
-    "offset": lambda scene: f"offset {scene.impact_offset:g} m" if scene.impact_offset else "no offset",
+    "offset": lambda scene: f"offset {scene.impact_offset:g} m",
+    "yaw": lambda scene: f"yaw {scene.impact_yaw:g}°",
+    "roll": lambda scene: f"roll {scene.impact_roll:g}°",
     "barrier": lambda scene: "no barrier" if scene.barrier is None else barrier_text(scene.barrier),
     "friction": lambda scene: "" if scene.barrier is None else f"friction {scene.barrier.friction:g}",
 }
-_ALWAYS = ("vehicle", "speed", "angle", "barrier")
+_IN_HEAD = ("vehicle", "speed", "angle", "offset", "yaw", "roll")
+_UNSAID = ("offset 0 m", "yaw 0°", "roll 0°")  # where all runs have it
 
 
 def plot_runs(results: Sequence[Result], channels: Sequence[str], labels: Sequence[str] | None) -> Figure:
@@ -131,7 +134,7 @@ def _told_apart(scenes: Sequence[Scene]) -> tuple[str, list[str]]:
     """Return what scenes have in common as a title, and what each has for itself as a label."""
     told = {name: [tell(scene) for scene in scenes] for name, tell in _PARTS.items()}
     same = {name: texts[0] for name, texts in told.items() if len(set(texts)) == 1}
-    head = ", ".join(same[name] for name in _ALWAYS[:-1] if name in same)
+    head = ", ".join(same[name] for name in _IN_HEAD if same.get(name, _UNSAID[0]) not in _UNSAID)
     common = "\n".join(part for part in (head, same.get("barrier", "")) if part) or "several scenes"
     labels = [
         ", ".join(texts[i] for name, texts in told.items() if name not in same) or f"run {i + 1}"

@@ -19,7 +19,7 @@ from .study_case import Case
 
 __all__ = ["load_section", "loads_csv", "metrics_csv"]
 
-_IMPULSE = "Impulse: until the vehicle leaves the barrier; later contacts are not in it."
+_IMPULSE = "Impulse: until the vehicle leaves the barrier or comes to rest; what follows is not in it."
 _DESIGN_WITH = (
     "A peak after CFC 60 may last some milliseconds: design with the 50-ms means or with a response of the "
     "element. The file has the unfiltered peaks too."

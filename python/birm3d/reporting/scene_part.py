@@ -11,6 +11,7 @@ from ..barrier.text import barrier_text
 from ..base.plain_words import plain_words
 from ..base.shown_numbers import shown_value
 from ..result.report import END_REASONS
+from ..scene.text import overlap_text
 from ..simulation.zone_numbers import unit_of_number
 from ..vehicle import Vehicle
 from ..vehicle.title import kind_words, vehicle_text
@@ -52,7 +53,7 @@ def scene_section(case: Case) -> Section:
             f"{scene.impact_speed / units.mph:.1f} mph)",
         ),
         ("impact angle", f"{scene.impact_angle:g}° between the path and the barrier's line (90°: head-on)"),
-        ("impact offset", f"{scene.impact_offset:g} m along the barrier's line"),
+        ("impact offset", f"{scene.path_offset:.4g} m along the barrier's line{overlap_text(scene)}"),
         ("yaw, roll at impact", f"{scene.impact_yaw:g}°, {scene.impact_roll:g}°"),
         ("kinetic energy at impact", f"{result.energy['kinetic'][0] / 1e3:,.1f} kJ"),
         ("ended", f"at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}"),

@@ -216,7 +216,7 @@ def _computed_line(case: Case) -> str:
 
 def risk_section(case: Case) -> Section:
     """Return what the occupants undergo."""
-    from ..assessment.risk_values import CAUTION, NOT_JUDGED
+    from ..assessment.risk_values import CAUTION
 
     if isinstance(case.risk, str):
         return Section("Occupant risk", "occupants", [Text(f"Not computed: {_without_value(case.risk)}.")])
@@ -228,7 +228,7 @@ def risk_section(case: Case) -> Section:
     )
     blocks: list[Block] = [
         Text(when),
-        *([Caution(NOT_JUDGED)] if case.risk.is_heavy else []),
+        *map(Caution, case.risk.notes),
         _risk_table(case, case.risk),
         *(Text(text) for text in case.risk.missing),
         Caution(CAUTION),

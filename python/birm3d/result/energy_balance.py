@@ -12,8 +12,17 @@ from .run_values import share_of_start
 if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
+    from .analysis import RunAnalysis
 
-__all__ = ["ENERGY_LIMIT", "FALL_LIMIT", "MOMENTUM_LIMIT", "BalanceWarning", "open_balances", "warn_if_open"]
+__all__ = [
+    "ENERGY_LIMIT",
+    "FALL_LIMIT",
+    "MOMENTUM_LIMIT",
+    "BalanceWarning",
+    "open_balances",
+    "open_rows",
+    "warn_if_open",
+]
 
 ENERGY_LIMIT = 5e-3
 """Energy residual, relative to the energy at the run's disposal, beyond which a run is wrong."""
@@ -70,6 +79,21 @@ def open_balances(scene: Scene, balances: _core.Balances) -> Iterator[Complaint]
         share = share_of_start(scene, fall.size, at_disposal)
         if share > FALL_LIMIT:
             yield complaint(f"the fall of {name}", FALL_LIMIT, share, fall)
+
+
+def open_rows(result: RunAnalysis) -> Iterator[Complaint]:
+    """Yield a complaint if the energies of the rows do not close; a result has no balances of its steps."""
+    residual = result.metrics.get("energy_residual", 0.0)
+    if residual > ENERGY_LIMIT:
+        text = partial(_text_of_rows, result.scene, residual)
+        yield Complaint(BalanceWarning, "energy_residual", residual, text)
+
+
+def _text_of_rows(scene: Scene, residual: float) -> str:
+    return (
+        f"energy_residual must be at most {ENERGY_LIMIT:g} of the initial kinetic energy, "
+        f"got {residual:.2g}: {_advice(scene)}"
+    )
 
 
 def _advice(scene: Scene) -> str:

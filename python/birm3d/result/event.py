@@ -19,6 +19,8 @@ for the last time, as its exit angle is. Rolling over counts over the whole run:
     the barrier. So does one that was stopped or redirected, and came past an end of the barrier afterwards.
     The path of one that was turned back counts until it is clear: two times the reach of the vehicle from
     its mass centre away from every element.
+    It may end before the line: one that had crossed it and came back, as about a pole, or one that was still
+    on its way. The detail has the distance.
 ``rolled_over``
     Neither of these, and an up axis was beyond 90 degrees from the vertical at some step. Vehicles that start
     more than 46 degrees from upright never have rolled over.
@@ -45,7 +47,9 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
+from ..barrier.kinds import MeshBarrier
 from .metric_functions import angle_of_exit
 from .metrics import ALONG_LINE, METRIC_UNITS, METRICS, compute_metrics
 from .record import RunRecord
@@ -123,6 +127,13 @@ _MANNERS = {
     "rests_beyond": "it came to rest behind the barrier",
     "over": "it went over the top of the barrier",
 }
+_AT_POSTS = {
+    "leaves": "it left along the barrier's line",
+    "slides_to_end": "it left along the barrier's line beyond the last post",
+}
+"""The same at posts, which have no face to slide along."""
+_GLANCES = "it glanced off the {post} and left beside it"
+_AT_LINE = 0.05  # m; a mass centre that is nearer to the line is neither before it nor past it
 _CLEARLY_NEARING = -1.0  # deg, of the path at the last contact
 _PARTS = {
     "segments": "no segments stand free",
@@ -152,11 +163,54 @@ def outcome_detail(result: RunRecord) -> str:
         nearing = _nearing(event, result.scene.barrier) if event.manner == "slow" else ""
         return f"it was {pace} when the run ended, {where} the barrier{nearing}{rolled}"
     if event.manner in ("between", "beside"):
-        past = "between two elements of the barrier" if event.manner == "between" else "the barrier's end"
-        return f"it passed {past}, {'touching it' if touched else 'untouched'}{rolled}"
+        return _way_past(result, event.manner, "touching it" if touched else "untouched") + rolled
     if event.manner == "over" and not touched:
         return f"{_MANNERS['over']} untouched: wheels meet nothing ahead of them in this model{rolled}"
-    return _MANNERS[event.manner] + _nearing(event, result.scene.barrier) + rolled
+    return _manner_words(event.manner, result.scene.barrier) + _nearing(event, result.scene.barrier) + rolled
+
+
+def _single_post(barrier: Barrier | None) -> str | None:
+    """Return what the only post of a barrier is called; ``None`` of other barriers."""
+    if barrier is None or not barrier.has_posts or len(barrier.element_names) > 1:
+        return None
+    return barrier.element_names[0]
+
+
+def _manner_words(manner: str, barrier: Barrier | None) -> str:
+    post = _single_post(barrier)
+    if post is not None and manner == "slides_to_end":
+        return _GLANCES.format(post=post)
+    words = _AT_POSTS if barrier is not None and barrier.has_posts else _MANNERS
+    return words.get(manner, _MANNERS[manner])
+
+
+def _way_past(result: RunRecord, manner: str, touching: str) -> str:
+    """Return where a vehicle passed; of one that ends before the barrier's line that it does."""
+    post = _single_post(result.scene.barrier)
+    beside = "the barrier's end" if post is None else f"beside the {post}"
+    where = "between two elements of the barrier" if manner == "between" else beside
+    past = _past_line(result)
+    if past is None or past[-1] > -_AT_LINE:
+        return f"it passed {where}, {touching}"
+    before = f"{-past[-1]:.1f} m before the barrier's line when the run ended"
+    if past.max() > _AT_LINE:
+        return f"it passed {where}, {touching}, and came back: its mass centre was {before}"
+    beside = "beside the barrier's end" if post is None and manner == "beside" else where
+    return f"it left {beside}, {touching}: its mass centre was {before}"
+
+
+def _past_line(result: RunRecord) -> npt.NDArray[np.float64] | None:
+    """Return how far the mass centre is past the line, shape (n,) [m].
+
+    ``None`` at meshes and segments that move, and on a path along the line: there the line is another one.
+    """
+    scene = result.scene
+    barrier = scene.barrier
+    along = abs(math.sin(math.radians(scene.impact_angle))) < ALONG_LINE
+    if barrier is None or along or barrier.core.segments or isinstance(barrier, MeshBarrier):
+        return None
+    past: npt.NDArray[np.float64] = (result.position - np.asarray(barrier.origin)) @ np.asarray(barrier._past)
+    return past
 
 
 def _nearing(event: _core.Event | Stored, barrier: Barrier | None) -> str:

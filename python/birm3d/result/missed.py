@@ -15,6 +15,7 @@ from ..base.complaints import Complaint
 if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
+    from .stored import Stored
 
 __all__ = ["MissedBarrierWarning", "missed_barrier"]
 
@@ -34,7 +35,7 @@ class _Path(NamedTuple):
     most: float  # to here [m]
 
 
-def missed_barrier(scene: Scene, event: _core.Event) -> Iterator[Complaint]:
+def missed_barrier(scene: Scene, event: _core.Event | Stored) -> Iterator[Complaint]:
     """Yield a complaint if the vehicle went past the end of the barrier untouched."""
     if scene.barrier is not None and event.manner == "beside" and event.time_of_separation is None:
         path = _path(scene)

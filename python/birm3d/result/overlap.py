@@ -11,6 +11,7 @@ from ..base.complaints import Complaint
 if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
+    from .stored import Stored
 
 __all__ = ["OVERLAP_LIMIT", "OverlapWarning", "overlaps"]
 
@@ -29,14 +30,14 @@ class OverlapWarning(UserWarning):
     """
 
 
-def overlaps(scene: Scene, statistics: _core.StepStatistics) -> Iterator[Complaint]:
+def overlaps(scene: Scene, statistics: _core.StepStatistics | Stored) -> Iterator[Complaint]:
     """Yield a complaint if the overlap was beyond :data:`OVERLAP_LIMIT`."""
-    overlap = statistics.greatest_overlap
+    overlap = float(getattr(statistics, "greatest_overlap", 0.0))  # results of earlier versions have none
     if overlap > OVERLAP_LIMIT and scene.barrier is not None:
         yield Complaint(OverlapWarning, "contact_overlap", overlap, partial(_text, scene, statistics))
 
 
-def _text(scene: Scene, statistics: _core.StepStatistics) -> str:
+def _text(scene: Scene, statistics: _core.StepStatistics | Stored) -> str:
     assert scene.barrier is not None
     element = scene.barrier.element_names[statistics.greatest_overlap_element]
     return (

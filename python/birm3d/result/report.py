@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from .. import units
 from ..barrier.text import barrier_text
 from ..base.shown_numbers import kilo_number
-from ..scene.text import overlap_text
+from ..scene.text import pose_text
 from ..vehicle.joint import LONGEST_SLIP
 from ..vehicle.title import vehicle_text
 from .core_contact import core_lines
@@ -18,6 +18,7 @@ from .run_warnings import doubt_lines
 
 if TYPE_CHECKING:
     from ..barrier.barrier import Barrier
+    from ..scene.scene import Scene
     from .analysis import RunAnalysis
 
 __all__ = ["END_REASONS", "report"]
@@ -44,9 +45,7 @@ def report(result: RunAnalysis) -> str:
         f"{outcome_words(result.outcome)}: {result.outcome_detail}",
         f"{vehicle_text(vehicle, 1)}, {vehicle.n_nodes} shell nodes, {len(vehicle.wheels)} wheels",
         *(f"  assumed: {one.text}" for unit in vehicle.units for one in unit.assumptions),
-        f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph) "
-        f"at {scene.impact_angle:g} deg{overlap_text(scene)} "
-        + (_barrier(scene.barrier) if scene.barrier else "without a barrier"),
+        f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph) " + _impact(scene),
         f"ended at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}",
         "",
         "computed",
@@ -104,7 +103,14 @@ def _slip_text(slip: float) -> str:
     return f", greatest slip {slip:.3f} m{beyond}"
 
 
+def _impact(scene: Scene) -> str:
+    pose = pose_text(scene)
+    if scene.barrier is None:
+        return f"without a barrier{pose}"
+    return f"at {scene.impact_angle:g}° to the line of the barrier{pose}: {_barrier(scene.barrier)}"
+
+
 def _barrier(barrier: Barrier) -> str:
     moving = barrier.core.segments or barrier.core.yielding_posts
     each = f", {moving[0].mass:,.0f} kg each" if moving else ""
-    return f"to the line of the barrier: {barrier_text(barrier)}{each}, friction {barrier.friction:g}"
+    return f"{barrier_text(barrier)}{each}, friction {barrier.friction:g}"

@@ -5,27 +5,31 @@ from __future__ import annotations
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from .core_contact import core_complaints
-from .energy_balance import open_balances
+from .. import _core
+from ..scene.mesh_check import coarse_skins
+from .core_contact import core_complaints, core_doubts
+from .energy_balance import open_balances, open_rows
 from .leaning_posts import leaning_posts
 from .low_barrier import low_barrier
 from .missed import missed_barrier
 from .overlap import overlaps
+from .tipping import tipping
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from .. import _core
     from ..base.complaints import Complaint
     from ..scene.scene import Scene
     from .analysis import RunAnalysis
     from .stored import Stored
 
 __all__ = [
+    "complaints_of",
     "complaints_of_run",
     "doubt_lines",
     "doubts",
     "doubts_of",
+    "told_of_run",
     "warn_of_run",
     "worst_doubts",
     "worst_lines",
@@ -45,6 +49,30 @@ def complaints_of_run(
     )
 
 
+def complaints_of(result: RunAnalysis) -> Iterator[Complaint]:
+    """Yield what a run warned of, a coarse skin too; also of a result that was read from a file.
+
+    The balances are those of the rows, see :func:`birm3d.result.energy_balance.open_rows`.
+    """
+    scene, statistics, event = result.scene, result.statistics, result._event
+    yield from coarse_skins(scene)
+    yield from overlaps(scene, statistics)
+    yield from core_complaints(scene, statistics)
+    yield from open_rows(result)
+    yield from tipping(result)
+    if event is not None:
+        yield from missed_barrier(scene, event)
+        yield from doubts(scene, statistics, event)
+
+
+def told_of_run(result: RunAnalysis, balances: _core.Balances) -> Iterator[Complaint]:
+    """Return the complaints of a run with histories, which can name the segment that tips."""
+    assert isinstance(result.statistics, _core.StepStatistics)
+    assert isinstance(result._event, _core.Event)
+    found = complaints_of_run(result.scene, result.statistics, balances, result._event)
+    return chain(found, tipping(result))
+
+
 def doubts(
     scene: Scene, statistics: _core.StepStatistics | Stored, event: _core.Event | Stored
 ) -> Iterator[Complaint]:
@@ -53,15 +81,16 @@ def doubts(
 
 
 def doubt_lines(result: RunAnalysis) -> Iterator[str]:
-    """Yield why the outcome can not be relied on, for cautions and reports."""
-    yield from worst_doubts([result])
+    """Yield why the outcome can not be relied on, for reports: what tips is told, too."""
+    yield from worst_lines([*doubts_of(result), *tipping(result)])
 
 
 def doubts_of(result: RunAnalysis) -> tuple[Complaint, ...]:
     """Return the complaints that say why the outcome of a run can not be relied on."""
     if result._event is None:
         return ()
-    return tuple(doubts(result.scene, result.statistics, result._event))
+    scene, statistics = result.scene, result.statistics
+    return (*doubts(scene, statistics, result._event), *core_doubts(scene, statistics))
 
 
 def worst_doubts(results: Iterable[RunAnalysis]) -> Iterator[str]:
@@ -80,9 +109,7 @@ def worst_lines(found: Iterable[Complaint]) -> Iterator[str]:
         yield doubt.advice()
 
 
-def warn_of_run(
-    scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances, event: _core.Event
-) -> None:
+def warn_of_run(result: RunAnalysis, balances: _core.Balances) -> None:
     """Warn of what makes the numbers of a run unreliable, or leaves it without an impact.
 
     Raises
@@ -99,6 +126,8 @@ def warn_of_run(
         As a warning, if a barrier that contains a front is lower than most of it.
     LeaningPostWarning
         As a warning, if posts that lean threw the vehicle up, or lay low.
+    TippingWarning
+        As a warning, if a segment that stands free would begin to tip.
     """
-    for complaint in complaints_of_run(scene, statistics, balances, event):
+    for complaint in told_of_run(result, balances):
         complaint.warn()

@@ -164,15 +164,19 @@ class Sensor:
         return f"Sensor({self.name!r} of {self.part} at ({x:g}, {y:g}, {z:g}) m, {len(self.time)} rows)"
 
 
-def place_sensor(result: RunRecord, point: str | Sequence[Quantity], part: str | int | None) -> Sensor:
-    """Return the sensor at a point; see :meth:`birm3d.Result.sensor`."""
+def place_sensor(
+    result: RunRecord, point: str | Sequence[Quantity], part: str | int | None, name: str = "point"
+) -> Sensor:
+    """Return the sensor at a point, which messages call by a name; see :meth:`birm3d.Result.sensor`."""
     units = result.scene.vehicle.units
     which = None if part is None else _unit_of(units, part)
     if not isinstance(point, str):
         if len(point) != 3:
-            raise ValueError(f"point must be three numbers (m) or the name of a point, got {point}")
-        place = [si("point", value, "length") for value in point]
-        _warn_if_far(units[which or 0], point, place)
+            raise ValueError(f"{name} must be three numbers (m) or the name of a point, got {point}")
+        place = [si(name, value, "length") for value in point]
+        if not np.isfinite(place).all():
+            raise ValueError(f"{name} must be three finite numbers (m), got {place}")
+        _warn_if_far(units[which or 0], point, place, name)
         return Sensor(result, "({:g}, {:g}, {:g}) m".format(*place), np.array(place), which or 0)
     if which is None:
         having = [i for i, unit in enumerate(units) if point in unit.points]
@@ -183,20 +187,20 @@ def place_sensor(result: RunRecord, point: str | Sequence[Quantity], part: str |
         which = having[0] if having else 0
     known = units[which].points
     if point not in known:
-        named = known if part is not None else dict.fromkeys(name for unit in units for name in unit.points)
+        named = known if part is not None else dict.fromkeys(one for unit in units for one in unit.points)
         raise ValueError(
-            f"point must be one of {', '.join(named)}, or three numbers (m) in the axes of the vehicle's "
+            f"{name} must be one of {', '.join(named)}, or three numbers (m) in the axes of the vehicle's "
             f"file; got {point!r} of {units[which].name!r}"
         )
     return Sensor(result, point, np.asarray(known[point], float), which)
 
 
-def _warn_if_far(unit: Vehicle, point: Sequence[Quantity], place: Sequence[float]) -> None:
+def _warn_if_far(unit: Vehicle, point: Sequence[Quantity], place: Sequence[float], name: str) -> None:
     """Warn of a place far outside the box about a unit's skin and its mass centre."""
     low, high = unit.skin_bounds
     box = np.minimum(low, 0.0) + unit.center_of_mass, np.maximum(high, 0.0) + unit.center_of_mass
     stated = [isinstance(value, (str, Stated)) for value in point]
-    warn_if_far_from_skin(place, box[0].tolist(), box[1].tolist(), stated)
+    warn_if_far_from_skin(place, box[0].tolist(), box[1].tolist(), stated, name)
 
 
 def _unit_of(units: Sequence[Vehicle], part: str | int) -> int:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
-from typing import ClassVar
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar
 
 from .. import _core, pictures
 from .._version import __version__
@@ -16,6 +16,7 @@ from ..result.run_warnings import warn_of_run
 from ..scene.mesh_check import warn_if_coarse
 from ..scene.scene import Scene
 from ..scene.settings import Settings
+from ..scene.text import pose_text
 from ..unit_check import given
 from ..units import Quantity, si
 from ..vehicle.vehicle import Vehicle
@@ -164,33 +165,34 @@ class Simulation:
             If a fixed time step is beyond what the scene allows; the message names one that would do.
         BusyError
             If another thread uses the simulation.
-        OverlapWarning
-            As a warning, if the rigid body got into the barrier.
-        CoreContactWarning
-            As a warning, if the barrier pressed the rigid core with more than the vehicle's weight.
-        BalanceWarning
-            As a warning, if a balance of the run does not close: energy, momentum, or dissipation that falls.
-        MissedBarrierWarning
-            As a warning, if the vehicle went past the end of the barrier and never touched it.
-        LowBarrierWarning, LeaningPostWarning
-            As warnings, if a barrier that contains a front is low, or posts that lean threw the vehicle up.
+        OverlapWarning, CoreContactWarning
+            As warnings, if the rigid body got into the barrier, or was pressed with more than its weight.
+        BalanceWarning, MissedBarrierWarning
+            As warnings, if a balance of energy or momentum does not close, or the barrier was never touched.
+        LowBarrierWarning, LeaningPostWarning, TippingWarning
+            As warnings, if a barrier that contains a front is low, posts that lean threw the vehicle up, or a
+            free-standing segment would begin to tip.
         ValueError
             If the frames are more than the result's rows or outside the run, or if the run takes more steps
             than a record holds; :meth:`result` has those that were taken.
         """
+        with run_bar(progress, self._scene.duration) as tick:
+            result = self._run(tick)
+        return result if frames is None else result.with_frames(frames)
+
+    def _run(self, tick: Callable[[Any, Any], None] | None) -> Result:
+        """Run to the end as :meth:`run` does; `tick` is called now and then with the time [s] and steps."""
         with self._core:
             if self._core.failed or self._core.end_reason != _core.EndReason.running:
                 self._reset()
             start = time.perf_counter()
             try:
-                with run_bar(progress, self._scene.duration) as tick:
-                    self._core.run(tick)
+                self._core.run(tick)
             finally:
                 self._run_time += time.perf_counter() - start
-            result = self._result()
-            balances, statistics, event = self._core.balances, self._core.statistics, self._core.event
-        warn_of_run(result.scene, statistics, balances, event)
-        return result if frames is None else result.with_frames(frames)
+            result, balances = self._result(), self._core.balances
+        warn_of_run(result, balances)
+        return result
 
     def step(self) -> bool:
         """Take one accepted step; return ``False`` when the run is over and nothing was done."""
@@ -273,10 +275,8 @@ class Simulation:
 
     def __repr__(self) -> str:
         scene = self._scene
-        return (
-            f"Simulation({scene.vehicle.name}, {scene.barrier}, {scene.impact_speed:g} m/s, "
-            f"{scene.impact_angle:g} deg)"
-        )
+        approach = f"{scene.impact_speed:g} m/s, {scene.impact_angle:g} deg{pose_text(scene)}"
+        return f"Simulation({scene.vehicle.name}, {scene.barrier}, {approach})"
 
 
 def run_scene(scene: Scene) -> Result:

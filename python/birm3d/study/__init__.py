@@ -7,7 +7,7 @@ from .verification.precision_result import PrecisionRow, WorkPrecision
 from .verification.recommendation import Recommendation
 from .verification.stability import stability
 from .verification.stability_result import Stability, StabilityRow
-from .verification.work_precision import work_precision
+from .verification.work_precision import WorkPrecisionInterrupted, work_precision
 
 __all__ = [
     "PrecisionRow",
@@ -17,6 +17,7 @@ __all__ = [
     "Study",
     "Summary",
     "WorkPrecision",
+    "WorkPrecisionInterrupted",
     "stability",
     "work_precision",
 ]

@@ -18,6 +18,7 @@ from ..base.arguments import checked
 from ..result.event import CONTAINED, HELD
 from ..result.leaning_posts import LeaningPostWarning
 from ..result.low_barrier import LowBarrierWarning
+from ..result.tipping import TippingWarning
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
 from .limit_question import Question
@@ -274,7 +275,9 @@ def least_segment_mass(
         remark=_of_tipping,
     )
     effort = Effort(points, resolution, draws, executor, progress)
-    return search_limit(simulation, question, masses, effort)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", TippingWarning)  # light segments are tried on purpose
+        return search_limit(simulation, question, masses, effort)
 
 
 @checked

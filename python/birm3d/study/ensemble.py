@@ -65,7 +65,7 @@ def ensemble(
     StudyInterrupted
         A KeyboardInterrupt, with the finished runs in its ``study``.
     OverlapWarning, CoreContactWarning, BalanceWarning, MissedBarrierWarning, LowBarrierWarning,
-    LeaningPostWarning
+    LeaningPostWarning, TippingWarning
         As warnings, each once: how many and which rows are not reliable, and what is wrong with the worst.
 
     Examples

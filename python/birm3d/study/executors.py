@@ -34,6 +34,7 @@ from .. import _core
 from ..base.complaints import Complaints
 from ..result.metrics import extremes_for, values_of_outcome
 from ..result.run_warnings import complaints_of_run
+from ..result.tipping import RATIO, can_tip, tipping_of_extremes
 from ..scene.mesh_check import coarse_skins
 from ..scene.scene import APPROACH, Scene
 from ..simulation.parameters import varied_scene
@@ -235,8 +236,10 @@ def _run_chunk(
     stop = stop or _core.Stop()
     finished: Finished = []
     complaints = Complaints()
-    runner, extremes = _core.Runner(), extremes_for(metrics)
+    runner = _core.Runner()
     for batch in _batches(simulation, names, chunk, finished, complaints, metrics):
+        tips = [RATIO] if any(can_tip(scene) for _, scene, _ in batch) else []  # it is warned of
+        extremes = extremes_for([*metrics, *tips])
         ended = runner.run([(core, scene.approach) for _, scene, core in batch], extremes, stop)
         # Those that were stopped are missing at the end.
         for (run, scene, _), done in zip(batch, ended, strict=False):
@@ -252,6 +255,7 @@ def _outcome(
     try:
         end = done.outcome()
         complaints.add(run, complaints_of_run(scene, end.statistics, end.balances, end.event))
+        complaints.add(run, tipping_of_extremes(scene, end.extremes))
         values = values_of_outcome(scene, end, metrics)
         reason = _END_REASONS[int(end.end_reason)]
         return Outcome(values, reason, end.event.outcome, f"{end.state_hash:016x}")

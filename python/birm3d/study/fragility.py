@@ -17,8 +17,8 @@ from ..base.intervals import wilson
 from ..result.event import HELD
 from ..result.metrics import METRIC_UNITS
 from ..simulation.simulation import Simulation
-from ..unit_check import given
-from ..units import Quantity
+from ..unit_check import warn_if_any_unusual
+from ..units import Quantity, si
 from .distributions import check_count, check_distributions, check_seed, sample
 from .lognormal_fit import Draws, LognormalFit, fit_lognormal
 from .runner import run_study
@@ -196,7 +196,9 @@ def fragility(
 
 
 def _speeds(speeds: Iterable[Quantity]) -> list[float]:
-    listed = [given("impact_speed", speed) for speed in speeds]
+    stated = list(speeds)
+    listed = [si("speeds", speed, "speed") for speed in stated]
+    warn_if_any_unusual("impact_speed", stated)
     if len(listed) < 2:
         raise ValueError(f"speeds must have at least two values, got {listed}")
     for before, speed in zip([0.0, *listed], listed, strict=False):

@@ -127,7 +127,7 @@ def run_study(
     MassWarning
         As a warning, once, if the vehicle's class can not have the mass in some rows.
     OverlapWarning, CoreContactWarning, BalanceWarning, CoarseSkinWarning, MissedBarrierWarning,
-    LowBarrierWarning, LeaningPostWarning
+    LowBarrierWarning, LeaningPostWarning, TippingWarning
         As warnings, each once for all runs that were run now: how many and which rows are not reliable, and
         what is wrong with the worst.
     """

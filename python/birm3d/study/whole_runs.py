@@ -11,7 +11,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from ..base.complaints import Complaints
 from ..base.progress import progress_bar
 from ..result.result import Result
-from ..result.run_warnings import complaints_of_run
+from ..result.run_warnings import told_of_run
 from ..scene.mesh_check import coarse_skins
 from ..scene.scene import Scene
 from .executors import ExecutorError, pool_of, result_of, submit
@@ -156,7 +156,7 @@ def _look_at(look: Callable[[Result], Found], run: int, scene: Scene) -> Look[Fo
         with core:
             core.run()
             result = Result._of(scene, core, 0.0)
-            complaints.add(run, complaints_of_run(scene, core.statistics, core.balances, core.event))
+            complaints.add(run, told_of_run(result, core.balances))
         return Look(run, look(result), "", complaints)
     except Exception as error:  # whatever goes wrong with a run is its reason
         return Look(run, None, f"{type(error).__name__}: {error}", complaints)

@@ -19,8 +19,8 @@ from ..result.event import outcome_words
 from ..result.metrics import METRIC_UNITS
 from ..simulation.parameters import varied
 from ..simulation.simulation import Simulation
-from ..unit_check import given
-from ..units import Quantity
+from ..unit_check import warn_if_any_unusual
+from ..units import Quantity, si
 from .impact_point import CriticalImpactPoint, critical_impact_point
 from .shown_columns import metric_column, shown_metric
 
@@ -224,7 +224,9 @@ def worst_offset(
     if metric not in METRIC_UNITS:
         raise ValueError(f"metric must be one of {', '.join(METRIC_UNITS)}; got {metric!r}")
     points = whole_number("points", points, least=3)
-    wanted = [barrier.spacing] if spacings is None else [given("spacing", value) for value in spacings]
+    stated = [barrier.spacing] if spacings is None else list(spacings)
+    wanted = [si("spacings", value, "length") for value in stated]
+    warn_if_any_unusual("spacing", () if spacings is None else stated)
     if not wanted:
         raise ValueError("spacings must be at least one, got an empty list")
     for spacing in wanted:

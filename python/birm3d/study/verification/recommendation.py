@@ -132,9 +132,9 @@ def report(study: PrecisionTable, error: float) -> str:
             least = max(limits, key=lambda name: limits[name].uncertainty / scale[name])
             known = limits[least].uncertainty / scale[least]
             lines.append(f"  what they tend to is known to {_percent(known)} ({least})")
-    for row in study.rows:
-        if row.refused and row.variant not in study.of_variant:
-            lines += ["", f"{row.variant}: refused: {row.refused}"]
+    without = [row for row in study.rows if row.refused and row.variant not in study.of_variant]
+    for text in dict.fromkeys(f"{row.variant}: refused: {row.refused}" for row in without):
+        lines += ["", text]
     return "\n".join(lines)
 
 
