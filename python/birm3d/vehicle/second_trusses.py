@@ -10,8 +10,8 @@ rear, or to the front for nodes behind the rigid core; across it to the same pla
 long, so that it hardly turns while it is pressed; its anchor is no point of the rigid core.
 
 Trusses across have the area of elements on the side's straight part. Where the side turns into the front,
-what a post draws in goes in with the front. They have the share of it by which the side's own truss slants
-back: none beside the rigid core, where that points across.
+what a post draws in goes in with the front. They have none of it beside the rigid core, where the side's own
+trusses point across, and all of it from the radius of a usual pole ahead of the core.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 _LENGTH = 3.0  # m, of trusses along the vehicle
+_BESIDE_CORE = 0.15  # m, ahead of the rigid core: a pole of 0.3 m further ahead passes the core
 _CORNER_SLOPE = 0.2  # of the outline from above against the vehicle's axis: where it is more, the side ends
 
 
@@ -65,7 +66,7 @@ def build_second(file: VehicleFile, mesh: ExteriorMesh) -> SecondTrusses:
     along_law = _laws_of_nodes(mesh, [place.get(zone.along_name, -1) for zone in file.zones])
     across_law = _laws_of_nodes(mesh, [place.get(zone.across_name, -1) for zone in file.zones])
     # An element's nodes are of one zone, so that elements of other zones add nothing to nodes with a law.
-    area_across = _straight_area(mesh, mesh.quads[across_law[mesh.quads[:, 0]] >= 0]) * _slant_back(mesh)
+    area_across = _straight_area(mesh, mesh.quads[across_law[mesh.quads[:, 0]] >= 0]) * _share_across(mesh)
     of = (np.flatnonzero(along_law >= 0), np.flatnonzero(area_across > 0.0))
     nodes = np.concatenate(of)
     anchors = np.concatenate([along[of[0]], across[of[1]]])
@@ -79,14 +80,9 @@ def _laws_of_nodes(mesh: ExteriorMesh, laws: list[int]) -> Ints:
     return np.array(laws, np.int64)[mesh.zone]
 
 
-def _slant_back(mesh: ExteriorMesh) -> Floats:
-    """Return sin^2 of the angle, seen from above, between the trusses and across, shape (n,).
-
-    Zero for trusses that slant to the front.
-    """
-    back, aside = (mesh.nodes - mesh.anchors)[:, :2].T
-    level = np.square(back) + np.square(aside)
-    return np.asarray(np.square(np.maximum(back, 0.0)) / np.where(level > 0.0, level, 1.0))
+def _share_across(mesh: ExteriorMesh) -> Floats:
+    """Return how much of a node's area its truss across has, by its place ahead of its anchor, shape (n,)."""
+    return np.asarray(np.clip((mesh.nodes - mesh.anchors)[:, 0] / _BESIDE_CORE, 0.0, 1.0))
 
 
 def _straight_area(mesh: ExteriorMesh, quads: Ints) -> Floats:
