@@ -216,5 +216,5 @@ def test_skin_that_comes_behind_a_thin_wall_is_let_go() -> None:
         )
         crash.run()
         left.append(crash._core.balances.energy.size / crash._core.balances.at_disposal)
-    assert left[1] < 5e-4, "measured: 2.0e-4; once 1.0e-3"
-    assert left[1] < 0.4 * left[0], "measured: 0.22; once 0.60"
+    assert left[1] < 3e-4, "measured: 1.2e-4; once 1.0e-3"
+    assert left[1] < 0.5 * left[0], "measured: 0.43; once 0.60, of six times as much"

@@ -23,7 +23,7 @@ def run(name: str, barrier: Barrier, speed: str, offset: float, **given: float) 
 
 def test_a_vehicle_that_came_back_before_the_line_says_so() -> None:
     """It turns about the pole, with its mass centre past the line, and leaves on the traffic side."""
-    result = run("passenger_car", POLE, "100 km/h", 0.4, impact_yaw=135.0)
+    result = run("pickup", POLE, "100 km/h", 0.4, impact_yaw=135.0)
     before = -result.position[-1, 0]
     assert before > 5.0
     assert result.position[:, 0].max() > 0.05

@@ -11,7 +11,7 @@ long, so that it hardly turns while it is pressed; its anchor is no point of the
 
 Trusses across have the area of elements on the side's straight part. Where the side turns into the front,
 what a post draws in goes in with the front. They have none of it beside the rigid core, where the side's own
-trusses point across, and all of it from the radius of a usual pole ahead of the core.
+trusses point across. They have all of it from the radius of a usual pole ahead of the core.
 """
 
 from __future__ import annotations
