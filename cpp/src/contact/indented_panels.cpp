@@ -78,7 +78,8 @@ std::optional<double> behind_at_corner(const ContactPass& pass, std::size_t k, c
                                        const Twist& motion) {
     const auto* post = std::get_if<Post>(&pass.obstacle(k).shape);
     if (pass.obstacle(k).top_edge || post == nullptr || post->opens) return std::nullopt;
-    if (meeting.before.beside_across() < 0.0) return std::nullopt;  // it came from below
+    if (meeting.before.beside_across() < 0.0)
+        return std::nullopt;  // it came from below, or was before the panel already
     if (!comes_towards(pass.mesh.panel[meeting.panel], pass.near[k].now, motion, least_into_corner))
         return std::nullopt;
     const double gap =

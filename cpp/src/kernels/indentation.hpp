@@ -57,6 +57,11 @@
 // face crushes what is deeper beside it. A post that comes past the panel's edge, deeper than the nodes there, does not indent the
 // panel either. What decides is where it was as it passed the edge, whatever the length of steps.
 //
+// Between a front and a side is a rounded corner that neither outline has. A post that comes past a panel's edge there, no deeper than
+// corner_depth, and moves into the panel (least_into_corner) does indent it. The indentation lags behind the post by the depth that the
+// post had then, so that no node jumps: `behind` is added to e of each node. Deeper posts, posts that slide along a side and edges of
+// walls do not indent the panel there.
+//
 // A post or a face draws in skin above its top only where the panel comes down to it. Below a node the panel ends at its lowest
 // node there (heights_above_edge). If that is above the top, as a load bed's side is beside a low wall, nothing holds the node. A
 // panel that rises above the top leaves the post or the face, as a vehicle does that pushes a post over.
@@ -134,7 +139,7 @@ Indentation between(const Indentation& one, const Indentation& other, double fra
 // Beside and along the panel as in `place`, and as deep in it as `other`, of the same obstacle and panel.
 Indentation as_deep_as(const Indentation& place, const Indentation& other);
 
-// Does the panel come towards the foot of an obstacle that stands still? `motion`: of the panel's body, body axes. `least`: cosine of
+// Does the panel come towards the foot of an obstacle, whose own motion is left out? `motion`: of the panel's body, body axes. `least`: cosine of
 // the panel's outward direction and its velocity there, which is exceeded.
 bool comes_towards(const Panel& panel, const Placement& stands, const Twist& motion, double least);
 

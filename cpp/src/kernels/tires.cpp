@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/sine_cosine.hpp"
 #include "birm3d/base/tolerances.hpp"
 
 namespace birm3d {
@@ -38,7 +39,7 @@ Vec3 point_on_ground(const Wheel& wheel, const Mat3& R, double height) {
 
 // A direction along the ground, turned to the left.
 Vec3 turned_by(double angle, const Vec3& direction) {
-    const double c = std::cos(angle), s = std::sin(angle);
+    const auto [s, c] = sine_cosine(angle);
     return {c * direction.x() - s * direction.y(), s * direction.x() + c * direction.y(), 0.0};
 }
 

@@ -25,7 +25,7 @@ struct SkinForces {
 };
 
 // Which panels of a unit an obstacle indents (src/kernels/indentation.hpp), bit by bit. A panel that it has entered from
-// the side is `passed`: the obstacle does not indent it before it has been in front of it again.
+// the side, and not at a rounded corner, is `passed`: the obstacle does not indent it before it has been in front of it again.
 struct IndentedPanels {
     std::size_t obstacle = 0;
     std::uint8_t panels = 0, passed = 0;
