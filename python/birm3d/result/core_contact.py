@@ -40,8 +40,8 @@ class CoreContactWarning(UserWarning):
     trusses resist it, and it is driven in to the core. Beside such a body travel and force are too great.
     Posts (poles, bollards) and planters draw in skin.
 
-    Whether a vehicle that comes turned by more than 10 degrees rolls over after such a blow is not reliable:
-    at a pole at 80 km/h, one degree of yaw changed it.
+    Whether a vehicle that comes turned by more than 10 degrees rolls over after such a blow is not reliable.
+    At a pole at 80 km/h, one degree of yaw changed it.
     """
 
 
