@@ -90,6 +90,14 @@ def test_yaw_and_roll(command: Callable[..., int], capsys: pytest.CaptureFixture
         car, Barrier.pole(), 30 * units.mph, impact_yaw=90.0, impact_roll=5.0, duration=0.05
     ).run()
     assert outcome["state_hash"] == f"{result.state_hash:016x}"
+    assert (outcome["impact_yaw"], outcome["impact_roll"], outcome["overlap"]) == (90.0, 5.0, None)
+
+
+def test_json_has_the_overlap(command: Callable[..., int], capsys: pytest.CaptureFixture[str]) -> None:
+    met = ("--overlap", "0.3", "--overlap-side", "right", "--barrier", "pole", "--duration", "0.05", "--json")
+    assert command(*CAR, *met) == 0
+    outcome = json.loads(capsys.readouterr().out)
+    assert (outcome["overlap"], outcome["overlap_side"]) == (0.3, "right")
 
 
 @pytest.mark.parametrize(

@@ -135,7 +135,7 @@ def test_the_warning_is_an_error_here_and_in_all_files_but_those_listed() -> Non
 
 def test_a_turned_vehicle_is_said_to_roll_as_the_blow_on_its_core_lifts_it() -> None:
     """One degree of yaw apart a car is upright with 7 degrees of roll, and rolls over: both say so."""
-    told = "at poles one degree of yaw decides whether it rolls over"
+    told = "is not reliable: at a pole at 80 km/h, one degree of yaw changed it"
     car = Vehicle.preset("passenger_car")
     outcomes = []
     for yaw in (90.0, 91.0):

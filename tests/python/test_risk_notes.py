@@ -12,6 +12,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Channel, OccupantRisk, Result, Simulation, Vehicle
+from birm3d.assessment.risk_study import RiskStudy
 from birm3d.reporting.blocks import Caution
 from birm3d.reporting.verdict import risk_section
 from birm3d.result.run_warnings import complaints_of
@@ -119,6 +120,43 @@ def test_the_larger_change_of_speed_decides_for_channels() -> None:
 
     assert olc_row(of(1.0, 0.9)).grade == "low"
     assert olc_row(of(1.0, -1.1)).grade == "not frontal"
-    assert olc_row(of(-1.0, 0.0)).grade == "not frontal"  # pushed on
+    assert olc_row(of(-1.0, 0.0)).grade == "does not apply"  # pushed on
     assert "by 13.7 m/s across the vehicle and falls by 12.5 m/s along it" in of(1.0, -1.1).notes[0]
     assert of(1.0, -1.1).olc == pytest.approx(of(1.0, 0.0).olc)  # the value stays
+
+
+@pytest.mark.parametrize(
+    ("fall", "across", "net", "grade"),
+    [
+        (5.0, 4.0, 0.7, "does not apply"),
+        (5.0, 4.0, 0.3, "low"),
+        (3.0, 4.0, 0.7, "not frontal"),
+        (0.0, 4.0, 0.7, "not frontal"),
+        (0.0, 4.0, 6.0, "does not apply"),
+    ],
+)
+def test_class_and_note_name_the_same_reason(fall: float, across: float, net: float, grade: str) -> None:
+    """The speed along falls, and ends at a net gain; the speed across changes meanwhile."""
+    time = np.arange(0.0, 0.25, 1e-4)
+    first = np.where(time < 0.1, 10.0 * np.pi / 2.0 * np.sin(np.pi * time / 0.1), 0.0)  # changes speed by 1
+    second = np.interp(time - 0.1, time, first, left=0.0)
+    x, y = (fall + net) * second - fall * first, across * first
+    risk = birm3d.occupant_risk(x=Channel("x", time, x, "m/s^2"), y=Channel("y", time, y, "m/s^2"))
+    assert olc_row(risk).grade == grade
+    note = "".join(risk.notes)
+    assert ("OLC does not apply" in note) is (grade == "does not apply")
+    assert ("OLC is for frontal pulses" in note) is (grade == "not frontal")
+
+
+def test_a_study_counts_runs_that_are_pushed_on_apart() -> None:
+    def of(x: float, y: float) -> OccupantRisk:
+        time = np.arange(0.0, 0.2, 1e-4)
+        pulse = np.where(time < 0.1, 20.0 * np.sin(np.pi * time / 0.1), 0.0)
+        return birm3d.occupant_risk(
+            x=Channel("x", time, x * pulse, "g"), y=Channel("y", time, y * pulse, "g")
+        )
+
+    study = RiskStudy(dict(enumerate([of(-1.0, 0.0), of(0.5, 1.0), of(1.0, 0.0)])), {})
+    side, rear = study.notes
+    assert side.startswith("OLC is for frontal pulses: in 1 of 3 runs")
+    assert rear.startswith("OLC does not apply in 1 of 3 runs")

@@ -5,12 +5,14 @@ from __future__ import annotations
 import warnings
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, TippingWarning, Vehicle
 from birm3d.result.run_warnings import complaints_of
+from birm3d.result.tipping import segments_that_tip, tipping, tipping_of_extremes
 
 
 def head_on(speed: float | str, **given: object) -> Simulation:
@@ -34,8 +36,31 @@ def test_segments_far_beyond_tipping_do_not_stop_a_truck_without_a_word() -> Non
     assert ratios.max() > 30.0
     name = result.scene.barrier.element_names[int(np.argmax(ratios))]
     (message,) = [str(one.message) for one in told]
-    assert f"got {ratios.max():.1f} of {name!r}: its overturning moment exceeds" in message
+    assert f"got {ratios.max():.3g} (50-ms mean) at {name!r}: the vehicle overturns it" in message
     assert "would begin to tip, which is not computed" in message
+
+
+def test_a_ratio_little_above_the_limit_reads_as_above_it() -> None:
+    scene = head_on(5.0).scene
+    extremes = SimpleNamespace(segments=SimpleNamespace(overturning=1.04 * scene.settings.gravity))
+    (complaint,) = tipping_of_extremes(scene, extremes)
+    assert "got 1.04 (50-ms mean) at a segment" in complaint.text()
+    assert complaint.advice().startswith(
+        "The overturning moment of a segment is 1.04 times its restoring one"
+    )
+
+
+def test_warning_and_design_loads_name_segments_by_one_limit() -> None:
+    result = stopped()
+    names = segments_that_tip(result)
+    assert names == tuple(
+        np.array(result.scene.barrier.element_names)[result.overturning_ratio.max(axis=0) > 1.0]
+    )
+    (complaint,) = tipping(result)
+    assert any(f"at {name!r}" in complaint.text() for name in names)
+    caution = birm3d.design_load(result, draws=0).caution
+    assert f"On {', '.join(names)} the overturning moment exceeds" in caution
+    assert result.report().count(f"{complaint.value:.3g} times its restoring one") == 1
 
 
 def test_report_and_occupant_risk_tell_it(tmp_path: Path) -> None:
@@ -66,7 +91,7 @@ def test_a_study_warns_once_whatever_its_metrics(metrics: list[str] | None) -> N
     with pytest.warns(TippingWarning) as told:
         study = birm3d.sweep(head_on(5.0), {"impact_speed": [0.1, 8.0, 12.0]}, metrics=metrics)
     (message,) = [str(one.message) for one in told if one.category is TippingWarning]
-    assert "of a segment: its overturning moment" in message
+    assert "at a segment: the vehicle overturns it by more than its weight holds" in message
     assert message.endswith("(row 2, the worst of 2 in 3 runs: rows 1 to 2)")
     wanted = {"max_overturning_ratio"} if metrics is None else set(metrics)
     assert wanted <= set(study.metrics)
@@ -75,9 +100,9 @@ def test_a_study_warns_once_whatever_its_metrics(metrics: list[str] | None) -> N
 
 @pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning", "ignore::birm3d.CoreContactWarning")
 def test_design_loads_and_an_ensemble_warn_of_it() -> None:
-    with pytest.warns(TippingWarning, match="of 'segment 3'"):
+    with pytest.warns(TippingWarning, match="at 'segment 3'"):
         birm3d.design_load(head_on(8.0), draws=0)
-    with pytest.warns(TippingWarning, match="of a segment"):
+    with pytest.warns(TippingWarning, match="at a segment"):
         birm3d.ensemble([head_on(8.0)], metrics=["end_time"])
 
 

@@ -14,6 +14,7 @@ from ..base.complaints import Complaint
 from ..result.element_loads import ElementLoad, touched_elements
 from ..result.result import Result
 from ..result.run_warnings import worst_lines
+from ..result.tipping import segments_that_tip
 from ..signals.filters import cfc
 from .element_design import peak_filter
 from .impact_end import end_of_impact
@@ -111,7 +112,7 @@ def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:
     if "time_of_separation" not in result.metrics:
         later = result.time > end_of_impact(result)
         found[_LEANS] = tuple(load.name for load in loads if _leans(load, later))
-    found[_TIPS] = _tipping(result)
+    found[_TIPS] = segments_that_tip(result)
     if loads and height_caution(result):
         found[_LOW] = ("the barrier",)
     if result.outcome == "undecided":
@@ -130,15 +131,6 @@ def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:
 def height_caution(result: Result) -> str:
     """Return that the force of a heavy vehicle is found low; ``""`` for a car, a van or a pickup."""
     return _LOW if result.scene.vehicle.mass > HEAVY_KG else ""
-
-
-def _tipping(result: Result) -> tuple[str, ...]:
-    """Return the segments that would begin to tip."""
-    barrier = result.scene.barrier
-    if barrier is None or barrier.stands_free() is None or not result.scene.settings.gravity > 0.0:
-        return ()
-    names = np.array(barrier.element_names)
-    return tuple(names[result.overturning_ratio.max(axis=0) > 1.0].tolist())
 
 
 def has_blow(result: Result) -> bool:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..result.run_warnings import doubts_of
 
 if TYPE_CHECKING:
+    from ..base.complaints import Complaint
     from ..result import Result
 
-__all__ = ["Doubt", "doubts_of_run"]
+__all__ = ["Doubt", "doubt_of", "doubts_of_run"]
 
 
 class Doubt(NamedTuple):
@@ -41,6 +42,10 @@ class Doubt(NamedTuple):
 
 def doubts_of_run(result: Result) -> Iterator[Doubt]:
     """Yield why the outcome of a run can not be relied on, as its warnings say."""
-    for one in doubts_of(result):
-        assert one.advice is not None  # doubts have one
-        yield Doubt(one.quantity, one.value, one.advice())
+    yield from map(doubt_of, doubts_of(result))
+
+
+def doubt_of(complaint: Complaint) -> Doubt:
+    """Return the doubt that a complaint with an advice raises."""
+    assert complaint.advice is not None
+    return Doubt(complaint.quantity, complaint.value, complaint.advice())

@@ -10,8 +10,9 @@ import numpy as np
 from .. import units
 from ..barrier.barrier import Barrier
 from ..barrier.kinds import Jersey
+from ..result.tipping import tipping
 from .criteria import Criterion
-from .doubts import Doubt
+from .doubts import Doubt, doubt_of
 from .limits import ASI_CLASSES, FLAIL_LIMITS, THIV_LIMIT_KM_H
 from .vehicles import HEAVY_KG
 
@@ -42,11 +43,6 @@ _LIMITS = (
     "Limits and tolerances are those that are commonly reported of the standard: check them in its text."
 )
 
-_TIPS = (
-    "The overturning moment of a segment is {ratio:.1f} times its restoring one: it would begin to tip, "
-    "which is not computed. Containment, penetration, widths and occupant risk hold for segments that stay "
-    "upright."
-)
 _ROLLS_LITTLE = (
     "Springs, steering and camber thrust are estimates: computed vehicles may roll too little. At a New "
     "Jersey barrier of 0.81 m the 10000S overturns at 16 deg, but stays upright at 15 deg. Its camber "
@@ -108,9 +104,7 @@ def model_cautions(barrier: Barrier | None) -> tuple[str, ...]:
 
 def tipping_doubts(result: Result) -> Iterator[Doubt]:
     """Yield a doubt if a free-standing segment would begin to tip."""
-    ratio = float(result.metrics.get("max_overturning_ratio", 0.0))
-    if ratio > 1.0:
-        yield Doubt("max_overturning_ratio", ratio, _TIPS.format(ratio=ratio))
+    yield from map(doubt_of, tipping(result))
 
 
 def roadside_doubts(result: Result, standard: RoadsideStandard, test: RoadsideTest) -> Iterator[Doubt]:

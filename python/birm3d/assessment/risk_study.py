@@ -25,6 +25,10 @@ _NOT_FRONTAL = (
     "OLC is for frontal pulses: in {n:,} of {all:,} runs the speed changes more across the vehicle than it "
     "falls along it, and a low OLC says nothing."
 )
+_PUSHED_ON = (
+    "OLC does not apply in {n:,} of {all:,} runs: there the vehicle is pushed on, not braked, as if hit from "
+    "the rear."
+)
 _HEAD = ("criterion", "median", "80 % band", "limit", "runs within the limit")
 
 
@@ -100,12 +104,13 @@ class RiskStudy:
     @property
     def notes(self) -> tuple[str, ...]:
         """What to consider before the values are used: warnings of runs, and where no standard judges."""
-        side = sum(not risk._is_frontal() for risk in self.risks)
+        reasons = [risk._why_no_olc() for risk in self.risks]
+        counts = {_NOT_FRONTAL: reasons.count("not frontal"), _PUSHED_ON: reasons.count("pushed on")}
         heavy = any(risk.is_heavy for risk in self.risks)
         return (
             *([NOT_JUDGED] if heavy else []),
             *self.warnings,
-            *([_NOT_FRONTAL.format(n=side, all=len(self.risks))] if side else []),
+            *(text.format(n=n, all=len(self.risks)) for text, n in counts.items() if n),
         )
 
     def summary(self) -> str:

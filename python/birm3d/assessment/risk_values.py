@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from typing import Literal
 
 from .. import units
 from ..base.arguments import checked
@@ -41,12 +42,13 @@ _FORWARD = 0.5
 """Gain of speed along the vehicle above which it is pushed on, not braked [m/s]."""
 _PUSHED_ON = (
     "The vehicle gains {gained:.1f} m/s along x: it is pushed on, not braked, and OLC does not apply. "
-    "If it was braked, the channel has the wrong sign: x is positive forward."
+    "If it was braked, the channel has the wrong sign or an offset: x is positive forward."
 )
 _NOT_FRONTAL = (
     "OLC is for frontal pulses. Here the speed changes by {across:.1f} m/s across the vehicle and falls by "
     "{along:.1f} m/s along it: a low OLC says nothing, and it has no class."
 )
+_OLC_CLASS = {"pushed on": "does not apply", "not frontal": "not frontal"}
 _VALUES = ("oiv_x", "oiv_y", "ridedown_x", "ridedown_y", "asi", "asi_1998", "thiv", "phd", "olc")
 
 
@@ -173,8 +175,9 @@ class OccupantRisk:
         return (*found, Criterion("OLC", self.olc, "g", limit, None, self._olc_class()))
 
     def _olc_class(self) -> str:
-        if self._is_pushed_on() or not self._is_frontal():
-            return "not frontal"
+        reason = self._why_no_olc()
+        if reason is not None:
+            return _OLC_CLASS[reason]
         low, high = OLC_LIMITS_G
         return "low" if self.olc <= low else "medium" if self.olc <= high else "high"
 
@@ -183,16 +186,17 @@ class OccupantRisk:
         _, velocity = self.pulse.since_zero()
         return max(0.0, -float(velocity[:, 0].min())), float(abs(velocity[:, 1]).max())
 
-    def _is_frontal(self) -> bool:
+    def _why_no_olc(self) -> Literal["pushed on", "not frontal"] | None:
+        """Return why OLC has no class; ``None``: it has one."""
         along, across = self._changes()
-        return along > across
+        is_pushed_on = self._has("x") and self._gained() > _FORWARD
+        if max(along, self._gained() if is_pushed_on else 0.0) <= across:
+            return "not frontal"
+        return "pushed on" if is_pushed_on else None
 
     def _gained(self) -> float:
         """Return the gain of speed along the vehicle from time zero to the end [m/s]."""
         return float(self.pulse.velocity[-1, 0] - self.pulse.velocity[self.pulse.zero, 0])
-
-    def _is_pushed_on(self) -> bool:
-        return "x" in self.pulse.known and self._gained() > _FORWARD
 
     def _indices(self) -> tuple[tuple[int, float], tuple[int, float]]:
         return (2010, self.asi_2010), (1998, self.asi_1998)
@@ -216,9 +220,10 @@ class OccupantRisk:
             yield NOT_JUDGED
         yield from self.warnings
         along, across = self._changes()
-        if self._is_pushed_on() and self._gained() > across:
+        reason = self._why_no_olc()
+        if reason == "pushed on":
             yield _PUSHED_ON.format(gained=self._gained())
-        elif not self._is_frontal():
+        elif reason == "not frontal":
             yield _NOT_FRONTAL.format(along=along, across=across)
 
     @property

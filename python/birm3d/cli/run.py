@@ -105,10 +105,12 @@ def _as_json(result: Result) -> dict[str, Any]:
         "vehicle": scene.vehicle.name,
         "mass": scene.vehicle.mass,
         "impact_speed": scene.impact_speed,
-        **{
-            name: getattr(scene, name)
-            for name in ("impact_angle", "impact_offset", "impact_yaw", "impact_roll")
-        },
+        "impact_angle": scene.impact_angle,
+        "impact_offset": scene.impact_offset,
+        "impact_yaw": scene.impact_yaw,
+        "impact_roll": scene.impact_roll,
+        "overlap": scene.overlap,
+        "overlap_side": scene.overlap_side,
         "outcome": result.outcome,
         "outcome_detail": result.outcome_detail,
         "end_reason": result.end_reason,

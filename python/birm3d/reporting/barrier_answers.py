@@ -12,6 +12,7 @@ from ..assessment.doubts import doubts_of_run
 from ..result.element_loads import touched_elements
 from ..result.event import gets_past
 from ..result.result import Result
+from ..result.tipping import RATIO, TIPPING_LIMIT
 from .class_bands import band_of
 from .static_force import band_of_design, made_by
 from .study_case import Case
@@ -48,13 +49,10 @@ def movement_answer(case: Case) -> Iterator[tuple[str, str]]:
             text += "; do not rely on the outcome, see the cautions below"
     else:
         text = f"segments move {far}{band}"
-        if "max_overturning_ratio" in metrics:
-            ratio, of_class = (
-                metrics["max_overturning_ratio"],
-                _band(case, "max_overturning_ratio", ".1f", ""),
-            )
-            text += f"; the overturning moment of one is up to {ratio:.1f} times its restoring one{of_class}"
-            text += _TIPS if ratio > 1.0 else ""
+        if RATIO in metrics:
+            ratio, of_class = metrics[RATIO], _band(case, RATIO, ".3g", "")
+            text += f"; the overturning moment of one is up to {ratio:.3g} times its restoring one{of_class}"
+            text += _TIPS if ratio > TIPPING_LIMIT else ""
     yield "How far does the barrier give way?", text
 
 

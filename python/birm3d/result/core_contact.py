@@ -21,12 +21,11 @@ if TYPE_CHECKING:
 
 __all__ = ["CoreContactWarning", "bottomed_out", "core_complaints", "core_doubts", "core_lines"]
 
-_TURNED = (
-    10.0  # deg of yaw from straight ahead or back, beyond which a blow on the core makes the vehicle roll
-)
+# Yaw from straight ahead or back beyond which a blow on the core makes the vehicle roll [deg].
+_TURNED = 10.0
 _ROLLS = (
-    "How far a vehicle that comes turned rolls after a blow on its core is not known: at poles one degree of "
-    "yaw decides whether it rolls over"
+    "Whether a vehicle that comes turned rolls over after a blow on its core is not reliable: at a pole at "
+    "80 km/h, one degree of yaw changed it"
 )
 
 
@@ -41,8 +40,8 @@ class CoreContactWarning(UserWarning):
     trusses resist it, and it is driven in to the core. Beside such a body travel and force are too great.
     Posts (poles, bollards) and planters draw in skin.
 
-    A vehicle that comes turned by more than 10 degrees rolls as that blow happens to lift it. At 80 km/h and
-    poles, one degree of yaw decides whether it rolls over: do not rely on that either way.
+    Whether a vehicle that comes turned by more than 10 degrees rolls over after such a blow is not reliable.
+    At a pole at 80 km/h, one degree of yaw changed it.
     """
 
 
@@ -51,17 +50,17 @@ def core_complaints(scene: Scene, statistics: _core.StepStatistics | Stored) -> 
     force = float(getattr(statistics, "core_contact_force", 0.0))  # results of earlier versions have none
     limit = scene.vehicle.mass * units.g(1.0)
     if force > limit:
-        causes = tuple(_causes(scene))
-        advice = _advice if _comes_turned(scene) else None
-        if advice is not None:
-            causes = (*causes, _ROLLS)
-        text = partial(_text, scene.vehicle.title, limit, force, statistics.core_contact_time, causes)
+        causes = (cause[0].upper() + cause[1:] for cause in _causes(scene))
+        further, advice = ((_ROLLS,), _advice) if _comes_turned(scene) else ((), None)
+        sentences = (*causes, *further)
+        text = partial(_text, scene.vehicle.title, limit, force, statistics.core_contact_time, sentences)
         yield Complaint(CoreContactWarning, "core_contact_force", force, text, advice)
 
 
 def core_doubts(scene: Scene, statistics: _core.StepStatistics | Stored) -> Iterator[Complaint]:
     """Yield the same complaint where whether the vehicle rolls over rests on that force."""
-    yield from (one for one in core_complaints(scene, statistics) if one.advice is not None)
+    if _comes_turned(scene):
+        yield from core_complaints(scene, statistics)
 
 
 def _comes_turned(scene: Scene) -> bool:
@@ -69,16 +68,16 @@ def _comes_turned(scene: Scene) -> bool:
 
 
 def _advice() -> str:
-    return f"The barrier reaches the rigid core. {_ROLLS}. Do not rely on that."
+    return f"The barrier reaches the rigid core. {_ROLLS}."
 
 
-def _text(title: str, limit: float, force: float, time: float, causes: tuple[str, ...]) -> str:
+def _text(title: str, limit: float, force: float, time: float, sentences: tuple[str, ...]) -> str:
     found = (
         f"core_contact_force must be at most {1e-3 * limit:,.0f} kN, the vehicle's weight ({title}), got "
         f"{1e-3 * force:,.0f} kN as a mean over 50 ms until {time:.3f} s: the barrier met what "
         "is not crushed, and peaks of force and deceleration are those of a blow between rigid bodies"
     )
-    return ". ".join([found, *(cause[0].upper() + cause[1:] for cause in causes)])
+    return ". ".join([found, *sentences])
 
 
 def _causes(scene: Scene) -> Iterator[str]:

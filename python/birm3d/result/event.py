@@ -202,7 +202,9 @@ def _way_past(result: RunRecord, manner: str, touching: str) -> str:
 def _past_line(result: RunRecord) -> npt.NDArray[np.float64] | None:
     """Return how far the mass centre is past the line, shape (n,) [m].
 
-    ``None`` at meshes and segments that move, and on a path along the line: there the line is another one.
+    ``None`` where the line does not pass through the barrier's origin. At meshes it is their far side.
+    Segments that stand free take it along. On a path along the barrier it lies across the path, where the
+    barrier begins.
     """
     scene = result.scene
     barrier = scene.barrier

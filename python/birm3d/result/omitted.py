@@ -98,12 +98,8 @@ def _barrier(result: RunAnalysis) -> Iterator[str]:
     elif free is None:
         yield f"its motion (fixed: {elements:,} {'element' if elements == 1 else 'elements'})"
     else:
-        over = result.metrics.get("max_overturning_ratio", 0.0)
         through = "but through pins, " if free.joint == "pinned" else "(loose ends), "
-        yield (
-            f"contact of its segments with each other {through}and their tipping: "
-            f"greatest overturning over restoring moment {over:.2f}"
-        )
+        yield f"contact of its segments with each other {through}and their tipping"
         if free.ground_friction == 0.0:
             yield "friction of the segments on the ground (ground_friction is 0)"
     if barrier.friction == 0.0:

@@ -76,17 +76,20 @@ def told_of_run(result: RunAnalysis, balances: _core.Balances) -> Iterator[Compl
 def doubts(
     scene: Scene, statistics: _core.StepStatistics | Stored, event: _core.Event | Stored
 ) -> Iterator[Complaint]:
-    """Return complaints that say why the outcome can not be relied on."""
+    """Return complaints of low barriers and leaning posts; blows on the core and tipping are left out."""
     return chain(low_barrier(scene, event), leaning_posts(scene, statistics, event))
 
 
 def doubt_lines(result: RunAnalysis) -> Iterator[str]:
-    """Yield why the outcome can not be relied on, for reports: what tips is told, too."""
+    """Yield why the outcome can not be relied on, for reports, including segments that would tip."""
     yield from worst_lines([*doubts_of(result), *tipping(result)])
 
 
 def doubts_of(result: RunAnalysis) -> tuple[Complaint, ...]:
-    """Return the complaints that say why the outcome of a run can not be relied on."""
+    """Return why the outcome of a run can not be relied on; segments that would tip are left out.
+
+    Low barriers, leaning posts, and blows on the core of a vehicle that comes turned.
+    """
     if result._event is None:
         return ()
     scene, statistics = result.scene, result.statistics

@@ -16,7 +16,15 @@ if TYPE_CHECKING:
     from ..scene.scene import Scene
     from .analysis import RunAnalysis
 
-__all__ = ["RATIO", "TIPPING_LIMIT", "TippingWarning", "can_tip", "tipping", "tipping_of_extremes"]
+__all__ = [
+    "RATIO",
+    "TIPPING_LIMIT",
+    "TippingWarning",
+    "can_tip",
+    "segments_that_tip",
+    "tipping",
+    "tipping_of_extremes",
+]
 
 TIPPING_LIMIT = 1.0
 """Overturning over restoring moment of a segment above which it begins to tip."""
@@ -49,6 +57,15 @@ def tipping(result: RunAnalysis) -> Iterator[Complaint]:
         yield _complaint(ratio, _segment(result))
 
 
+def segments_that_tip(result: RunAnalysis) -> tuple[str, ...]:
+    """Return the names of all segments that would begin to tip."""
+    if not can_tip(result.scene) or len(result.time) < 2:
+        return ()
+    assert result.scene.barrier is not None
+    ratios = result.overturning_ratio.max(axis=0)
+    return tuple(result.scene.barrier.element_names[i] for i in np.flatnonzero(ratios > TIPPING_LIMIT))
+
+
 def tipping_of_extremes(scene: Scene, extremes: _core.Extremes) -> Iterator[Complaint]:
     """Yield the same of a run without histories, of which the segment is not known."""
     if can_tip(scene):
@@ -64,16 +81,17 @@ def _complaint(ratio: float, segment: str) -> Complaint:
 
 def _text(ratio: float, segment: str) -> str:
     return (
-        f"{RATIO} must be at most {TIPPING_LIMIT:g} for segments that stay upright, got {ratio:.1f} of "
-        f"{segment}: its overturning moment exceeds the restoring one of its weight. It would begin to "
-        "tip, which is not computed; heavier segments, a wider base or an anchorage help"
+        f"{RATIO} must be at most {TIPPING_LIMIT:g} for segments that stay upright, got {ratio:.3g} "
+        f"(50-ms mean) at {segment}: the vehicle overturns it by more than its weight holds. It would begin "
+        "to tip, which is not computed; heavier segments, a wider base or an anchorage help"
     )
 
 
 def _advice(ratio: float, segment: str) -> str:
     return (
-        f"The overturning moment of {segment} is {ratio:.1f} times its restoring one: it would begin to "
-        "tip, which is not computed. The outcome holds for segments that stay upright."
+        f"The overturning moment of {segment} is {ratio:.3g} times its restoring one: it would begin to "
+        "tip, which is not computed. Containment, penetration, widths and occupant risk hold for segments "
+        "that stay upright."
     )
 
 

@@ -156,8 +156,7 @@ class Simulation:
             Number or instants [s] of the skin's positions that the result keeps for pictures, see
             :meth:`birm3d.Result.with_frames`; ``None``: none, at no cost.
         progress
-            Whether a run of more than a second shows a bar on stderr; ``None``: if that is a terminal, and in
-            notebooks.
+            Whether a run of over a second shows a bar; ``None``: if stderr is a terminal, and in notebooks.
 
         Raises
         ------
@@ -166,9 +165,10 @@ class Simulation:
         BusyError
             If another thread uses the simulation.
         OverlapWarning, CoreContactWarning
-            As warnings, if the rigid body got into the barrier, or was pressed with more than its weight.
+            As warnings, if the rigid body got more than 0.1 m into the barrier, or was pressed with more than
+            the vehicle's weight as a mean over 50 ms.
         BalanceWarning, MissedBarrierWarning
-            As warnings, if a balance of energy or momentum does not close, or the barrier was never touched.
+            As warnings, if a balance does not close, or the vehicle went past the barrier's end untouched.
         LowBarrierWarning, LeaningPostWarning, TippingWarning
             As warnings, if a barrier that contains a front is low, posts that lean threw the vehicle up, or a
             free-standing segment would begin to tip.

@@ -18,7 +18,7 @@ from ..base.arguments import checked
 from ..result.event import CONTAINED, HELD
 from ..result.leaning_posts import LeaningPostWarning
 from ..result.low_barrier import LowBarrierWarning
-from ..result.tipping import TippingWarning
+from ..result.tipping import RATIO, TIPPING_LIMIT, TippingWarning
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
 from .limit_question import Question
@@ -57,7 +57,7 @@ _SLIDE = "Segments slide under it, but do not tip: look at max_overturning_ratio
 _STRONG = "{:.2f} m: more than a third of the front's resistance would stand above the barrier"
 _SLIDES = "Computed, not tested. Segments slide but do not tip, and their joints do not break."
 _TIPS = (
-    " At {value:,.0f} kg max_overturning_ratio is {ratio:.1f}: a segment would begin to tip, and the answer "
+    " At {value:,.0f} kg max_overturning_ratio is {ratio:.3g}: a segment would begin to tip, and the answer "
     "is not to be used unless something keeps it upright."
 )
 _STANDS = " At {value:,.0f} kg max_overturning_ratio is {ratio:.2f}: no segment would begin to tip."
@@ -344,19 +344,18 @@ def least_tube_thickness(
 
 def _of_tipping(simulation: Simulation, question: Question, value: float, executor: Any) -> str:
     """Return how far beyond tipping the segments are at a mass, the worst of all offsets."""
-    name = "max_overturning_ratio"
     study = run_study(
         simulation,
         (question.parameter, "impact_offset"),
         question.rows(value),
-        metrics=[name],
+        metrics=[RATIO],
         executor=executor,
         progress=False,
     )
-    ratio = float(study[name].max())
+    ratio = float(study[RATIO].max())
     if math.isnan(ratio):
         return ""  # without gravity nothing holds a segment down
-    return (_TIPS if ratio > 1.0 else _STANDS).format(value=value, ratio=ratio)
+    return (_TIPS if ratio > TIPPING_LIMIT else _STANDS).format(value=value, ratio=ratio)
 
 
 def _barrier(simulation: Simulation) -> Barrier:

@@ -101,8 +101,9 @@ def work_precision(
         Runs of each setting in turn (A B A B ...); times are medians, stepping only. Reference runs are not
         repeated, nor are runs of more than a second.
     most_steps
-        Of a run of another contact model or representation, > 0. One that takes more is refused, and so are
-        stricter tolerances of that model: at these, a model may step from one contact to the next for ever.
+        Most steps of a run with a contact model or representation other than the scene's own, > 0; at strict
+        tolerances such a model may take ever shorter steps between changes of contact. One that takes more is
+        refused, and so are stricter tolerances of that model.
     progress
         Bar on stderr; ``None``: if that is a terminal.
 
