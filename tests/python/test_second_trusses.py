@@ -171,10 +171,10 @@ def test_the_area_across_does_not_depend_on_the_mesh(preset: str) -> None:
 
 @pytest.mark.parametrize("preset", PRESETS)
 @pytest.mark.parametrize("share", [0.3, 0.45, 0.6, 0.8])
-@pytest.mark.parametrize(("speed", "least"), [(14.0, 0.85), (22.0, 0.75)])
+@pytest.mark.parametrize(("speed", "least", "most"), [(14.0, 0.85, 1.2), (22.0, 0.75, 1.25)])
 @pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
 def test_a_pole_ahead_of_the_core_takes_the_momentum_of_a_rigid_body(
-    preset: str, share: float, speed: float, least: float
+    preset: str, share: float, speed: float, least: float, most: float
 ) -> None:
     """It went through cars and trucks with up to a fifth of this.
 
@@ -188,7 +188,7 @@ def test_a_pole_ahead_of_the_core_takes_the_momentum_of_a_rigid_body(
     impulse = abs(result.barrier_force[:, 0].sum()) * result.scene.settings.output_interval
     inertia = vehicle.inertia[2, 2]
     rigid = inertia / (inertia + vehicle.mass * ahead**2) * vehicle.mass * speed
-    assert least * rigid < impulse < 1.25 * rigid
+    assert least * rigid < impulse < most * rigid
     assert result.metrics["energy_residual"] < 1e-3
 
 

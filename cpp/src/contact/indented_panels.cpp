@@ -34,14 +34,6 @@ bool came_from_in_front(const ContactPass& pass, std::size_t p, const Indentatio
     return gap < infinity ? gap > least : is_in_front(pass, as_deep_as(now, at_edge), p, least);
 }
 
-// What the obstacle indents in the list; nothing where that does not have it.
-IndentedPanels panels_by(const std::vector<IndentedPanels>& list, std::size_t obstacle) {
-    const auto known = std::find_if(list.begin(), list.end(), [obstacle](const IndentedPanels& indented) {
-        return indented.obstacle == obstacle;
-    });
-    return known != list.end() ? *known : IndentedPanels{obstacle};
-}
-
 // A post or a face with a top edge before a panel, at the end and at the start of the step.
 struct PanelMeeting {
     std::size_t panel;
@@ -113,17 +105,15 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         PanelMeeting meeting{p, indentation,
                              indentation_by(obstacle, near.before, panel, mesh, pass.scene.settings)};
         meeting.stay_behind(last.behind[p]);
-        if (indents || (!passed && came_from_in_front(pass, p, meeting.before, meeting.indentation))) {
-            indent(pass, k, meeting, now, list);
-            continue;
-        }
-        const auto behind = passed ? std::nullopt : behind_at_corner(pass, k, meeting, motion);
-        if (behind) {
+        if (!indents && (passed || !came_from_in_front(pass, p, meeting.before, meeting.indentation))) {
+            const auto behind = passed ? std::nullopt : behind_at_corner(pass, k, meeting, motion);
+            if (!behind) {
+                now.passed |= bit;
+                continue;
+            }
             meeting.stay_behind(*behind);
-            indent(pass, k, meeting, now, list);
-        } else {
-            now.passed |= bit;
         }
+        indent(pass, k, meeting, now, list);
     }
     return now;
 }

@@ -115,7 +115,7 @@ struct Indentation : IndentationNumbers {
     // the panel.
     double beside() const;
 
-    // The same of its distance beside the panel alone: negative also if it is below.
+    // Distance across the post between it and the panel (m). Negative if they overlap across, though the post may be below.
     double beside_across() const { return std::max(low - most_w, least_w - high); }
 
     // Of the post over the panel, along `into` from the foot (m).

@@ -129,9 +129,7 @@ constexpr double come = tolerance::touching_gap;
 
 // Does the post indent the panel already? Then nodes that it has released do not follow it again, however near it is.
 bool indents_already(const UnitState& unit, std::size_t obstacle, std::size_t panel) {
-    return std::any_of(unit.indented.begin(), unit.indented.end(), [=](const IndentedPanels& indented) {
-        return indented.obstacle == obstacle && (indented.panels >> panel & 1U) != 0;
-    });
+    return (panels_by(unit.indented, obstacle).panels >> panel & 1U) != 0;
 }
 
 }  // namespace

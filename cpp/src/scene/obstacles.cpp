@@ -90,15 +90,6 @@ double fastest_moving_element(const Scene& scene, const State& state) {
 
 namespace {
 
-// Panels of the unit that the obstacle indents, one bit each. Skin that it has pushed aside may be inside its outline
-// (kernels/indentation.hpp).
-std::uint8_t indented_panels(const UnitState& unit, std::size_t obstacle) {
-    const auto known =
-        std::find_if(unit.indented.begin(), unit.indented.end(),
-                     [=](const IndentedPanels& indented) { return indented.obstacle == obstacle; });
-    return known != unit.indented.end() ? known->panels : std::uint8_t{0};
-}
-
 // Some points of a block. Each of the others is replaced by one of these.
 class SelectedPoints {
   public:
@@ -139,7 +130,8 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
             const Shape& shape = scene.obstacles[i].shape;
             const Placement in_shape = placement(pose_of(scene, i, state), unit.body);
             if (!within_reach(shape, in_shape, all, least)) continue;
-            const std::uint8_t indented = indented_panels(unit, i);
+            // Skin that it has pushed aside may be inside its outline (kernels/indentation.hpp).
+            const std::uint8_t indented = panels_by(unit.indented, i).panels;
             std::optional<SelectedPoints> selected;
             if (what.nodes)
                 least = nearest_in_blocks(

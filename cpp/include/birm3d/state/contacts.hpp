@@ -1,8 +1,10 @@
 // State of a unit's contacts that the next step needs, beside its trusses.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "birm3d/base/types.hpp"
 #include "birm3d/model/truss_mesh.hpp"
@@ -31,5 +33,13 @@ struct IndentedPanels {
     std::uint8_t panels = 0, passed = 0;
     std::array<double, birm3d::panels> behind{};  // how far each indentation stays behind the post (m)
 };
+
+// What the obstacle indents in the list; nothing where that does not have it.
+inline IndentedPanels panels_by(const std::vector<IndentedPanels>& list, std::size_t obstacle) {
+    const auto known = std::find_if(list.begin(), list.end(), [obstacle](const IndentedPanels& indented) {
+        return indented.obstacle == obstacle;
+    });
+    return known != list.end() ? *known : IndentedPanels{obstacle};
+}
 
 }  // namespace birm3d
